@@ -1,0 +1,87 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "applique/base/error.h"
+#include "applique/base/types.h"
+#include "applique/patch/patch.h"
+#include "applique/region/region.h"
+#include "applique/surface/surface_mesh.h"
+#include "applique/warp/warp.h"
+
+namespace applique {
+
+/// A pin: this point of the image lands exactly on that point of the surface.
+struct Feature {
+  Pixel image;
+  SurfacePoint surface;
+  double depth = 0;  ///< Order where the region overlaps itself: larger is on top.
+};
+
+/// Size and direction for a decal with a single feature.
+struct LoneFrame {
+  double width;  ///< The image's width on the surface, scene units, > 0.
+  Vec3 up;       ///< Direction of the image's upper edge, scene space; not along the surface normal.
+};
+
+/// What to stick where.
+struct DecalInput {
+  std::string name;  ///< For messages.
+  Region region;
+  std::vector<Feature> features;  ///< At least one.
+  std::optional<LoneFrame> lone;  ///< Needed with one feature, ignored with more.
+};
+
+enum class Energy { isometric, conformal };
+
+struct SolveOptions {
+  Energy energy = Energy::isometric;
+  int max_solves = 60;  ///< Embeddings before giving up.
+};
+
+/// How the growth ended (§2.7 of the design).
+enum class Coverage { covered, clipped_by_boundary, clipped_by_cover, clipped_closed, not_converged };
+
+/// Quality of a map, over the faces in the region weighted by their clipped area (§9 of the design).
+struct MapQuality {
+  double l2_stretch = 1;         ///< Sander et al. 2001, normalised: an isometry scores 1.
+  double linf_stretch = 1;
+  double angle_distortion = 1;   ///< Area mean of sigma1 / sigma2.
+  double area_distortion = 1;    ///< Area mean of max(s1 s2, 1 / (s1 s2)).
+  std::uint32_t flipped_plane = 0;   ///< Triangles turned over in the embedding.
+  std::uint32_t flipped_image = 0;   ///< Triangles turned over in the image.
+  double coverage = 0;           ///< Share of the region's area that lands on the surface.
+  double area = 0;               ///< Surface area of the region, scene units squared.
+  std::vector<double> feature_residual;  ///< Pixels, per feature, in the exact map.
+};
+
+/// Seconds by stage.
+struct SolveTimes {
+  double graph = 0, seed = 0, embed = 0, warp = 0, grow = 0, metrics = 0, total = 0;
+};
+
+/// A solved decal: the patch and its map into the image.
+struct DecalMap {
+  Patch patch;
+  IdVector<PatchVertexId, Vec2> plane;    ///< The aligned embedding.
+  IdVector<PatchVertexId, Vec2> image;    ///< warp(plane).
+  Warp warp;                              ///< plane -> image, exact everywhere.
+  IdVector<PatchFaceId, char> linear;     ///< The linear map stands for the warp (to 0.02 px).
+  IdVector<PatchFaceId, char> textured;   ///< The face meets the region (and is no bridged hole).
+  IdVector<PatchFaceId, double> depth;    ///< Order of overlapping faces.
+  FeatureGraph graph;
+  Coverage status = Coverage::not_converged;
+  MapQuality quality;
+  SolveTimes times;
+  int solves = 0;
+  std::vector<Warning> warnings;
+};
+
+/// Solves one decal: "method": "applique" (§2 to §6 of the design). Cost follows the patch, not the surface.
+/// Errors, each naming the decal and the features: feature_outside_region, features_coincide, size_missing,
+/// features_disconnected, features_mirrored, not_solved.
+Result<DecalMap> solve_decal(const SurfaceMesh& surface, const DecalInput& input, const SolveOptions& options = {});
+
+}  // namespace applique

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "applique/image/image.h"
+#include "applique/image/image_frame.h"
+
+namespace applique {
+
+class Region;
+
+/// The decal's image ready to be sampled: linear light, premultiplied alpha, cut by the region's contour (its
+/// coverage of each pixel, anti-aliased, multiplies the alpha), with a mip pyramid of box-filtered levels.
+/// Outside level 0 the image is transparent.
+struct DecalImage {
+  struct Level {
+    std::uint32_t offset;  ///< First texel in `texels`.
+    std::uint32_t width;
+    std::uint32_t height;
+  };
+  ImageFrame frame;
+  std::vector<Level> levels;                 ///< Level 0 is the image itself; the last is 1 x 1.
+  std::vector<std::array<float, 4>> texels;  ///< All levels one after another, row by row from the top.
+};
+
+/// Cuts `image` by `region` and builds the pyramid.
+DecalImage make_decal_image(const Image& image, const Region& region);
+
+/// IEC 61966-2-1, values in [0, 1].
+double srgb_to_linear(double encoded);
+double linear_to_srgb(double linear);
+
+}  // namespace applique

@@ -1,0 +1,62 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "applique/base/error.h"
+#include "applique/base/types.h"
+#include "applique/image/decal_image.h"
+#include "applique/image/image.h"
+#include "applique/warp/warp.h"
+
+namespace applique {
+
+/// A point of a texture, in texels: origin at its top-left corner, v down, the first texel's centre (0.5, 0.5).
+/// Not yet wrapped: may lie outside the texture.
+using Texel = std::array<double, 2>;
+
+enum class WrapMode : std::uint32_t { repeat, clamp, mirror };
+enum class BlendMode : std::uint32_t { normal, multiply, screen };
+
+/// One patch triangle laid out in a texture. What is written at a texel depends on the exact map there: its
+/// barycentrics in `texel` give a plane point from `plane`, which the warp carries to the image; where `linear`,
+/// interpolating `image` does as well (to 0.02 px).
+struct TransferFace {
+  std::array<Texel, 3> texel;  ///< Either orientation.
+  std::array<Vec2, 3> plane;
+  std::array<Vec2, 3> image;   ///< warp(plane), plane units (ImageFrame turns them into pixels).
+  bool linear = true;
+  std::uint32_t sheet = 0;     ///< Rank by depth among overlapping patch faces: larger is above.
+};
+
+/// One decal's share of one texture.
+struct Transfer {
+  std::vector<TransferFace> faces;
+  std::vector<std::array<Texel, 3>> foreign;  ///< UV triangles that use the texture and are not in `faces`.
+  const Warp* warp = nullptr;
+  const DecalImage* image = nullptr;
+  double opacity = 1;
+  BlendMode blend = BlendMode::normal;
+  WrapMode wrap_u = WrapMode::repeat;
+  WrapMode wrap_v = WrapMode::repeat;
+  std::uint32_t gutter = 16;  ///< Texels around the UV islands that are filled by extending the nearest face.
+};
+
+/// What a transfer did, and, when asked for, the image point of each covered texel.
+struct TransferResult {
+  std::uint64_t covered_texels = 0;   ///< Texels whose centre lies in a face.
+  std::uint64_t gutter_texels = 0;    ///< Texels outside every island that were filled.
+  std::uint64_t shared_texels = 0;    ///< Covered texels that a foreign triangle covers too (UV overlap).
+  struct Sample {
+    std::uint32_t x, y;  ///< The texel, wrapped.
+    Pixel image;
+  };
+  std::vector<Sample> samples;  ///< Row by row; empty unless asked for.
+};
+
+/// The double-precision CPU twin of GpuTransfer: composites the decal into `texture`, in place. Texels that it
+/// does not change keep their value bit for bit.
+TransferResult transfer_on_cpu(const Transfer& transfer, Image& texture, bool keep_samples = false);
+
+}  // namespace applique

@@ -1,0 +1,82 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "applique/base/error.h"
+#include "applique/base/types.h"
+#include "applique/image/image.h"
+#include "applique/surface/surface_mesh.h"
+#include "applique/transfer/transfer.h"
+#include "document.h"
+
+namespace applique {
+
+/// The triangles of one primitive under one node, in scene space at the rest pose (node transforms, the skin's
+/// joints at their own transforms, the morph targets' default weights).
+struct ModelPart {
+  std::size_t node = 0;       ///< Index in the document.
+  std::size_t mesh = 0;       ///< Index in the document.
+  std::size_t primitive = 0;  ///< Index in the mesh.
+  std::optional<std::size_t> material;
+  std::vector<Vec3> positions;                ///< Scene space, one per glTF vertex.
+  std::vector<Vec3> normals;                  ///< Unit; from the file or computed.
+  std::vector<std::array<double, 2>> uvs;     ///< Of the base-colour texture, KHR_texture_transform applied, in
+                                              ///< texture space [0,1] before wrapping. Empty: no UVs.
+  std::vector<std::array<std::uint32_t, 3>> triangles;  ///< Lists, strips and fans alike; winding seen from outside.
+};
+
+/// How a material shows its base colour.
+struct ModelMaterial {
+  std::string name;
+  std::array<double, 4> base_colour_factor = {1, 1, 1, 1};
+  std::optional<std::size_t> texture;  ///< Document texture index of the base colour.
+  std::optional<std::size_t> image;    ///< Document image index behind it.
+  WrapMode wrap_u = WrapMode::repeat;
+  WrapMode wrap_v = WrapMode::repeat;
+  std::string alpha_mode = "OPAQUE";
+  double alpha_cutoff = 0.5;
+  bool double_sided = false;
+};
+
+/// A glTF model, decoded: what the default scene shows.
+struct Model {
+  Document document;
+  std::vector<ModelPart> parts;
+  std::vector<ModelMaterial> materials;  ///< By document index.
+  Vec3 lower = Vec3::Zero();             ///< Bounding box of the parts.
+  Vec3 upper = Vec3::Zero();
+  std::vector<Warning> warnings;
+
+  [[nodiscard]] double diagonal() const { return (upper - lower).norm(); }
+};
+
+/// Reads a .glb or .gltf with its files. Errors: file_unreadable, model_invalid (names the accessor, node, …),
+/// model_unsupported (names the extension or format and what to do).
+Result<Model> load_model(const std::filesystem::path& path);
+
+/// Decodes an image of the document. Errors as read_image's, naming the image.
+Result<Image> load_model_image(const Model& model, std::size_t image);
+
+/// The surface that a decal may use: parts welded together, and where each surface face came from.
+struct ModelSurface {
+  SurfaceMesh mesh;
+  struct Source {
+    std::uint32_t part;      ///< Index in Model::parts.
+    std::uint32_t triangle;  ///< Index in its triangles.
+  };
+  std::vector<Source> sources;  ///< By SurfaceMesh::source.
+
+  [[nodiscard]] const Source& source(FaceId f) const { return sources[mesh.source[f]]; }
+};
+
+/// Welds the parts whose node and material are allowed; an empty list allows all. Names that match nothing are an
+/// error of the caller's to check first.
+ModelSurface build_surface(const Model& model, const std::vector<std::size_t>& nodes = {},
+                           const std::vector<std::size_t>& materials = {});
+
+}  // namespace applique
