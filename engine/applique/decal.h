@@ -46,14 +46,14 @@ enum class Coverage { covered, clipped_by_boundary, clipped_by_cover, clipped_cl
 
 /// Quality of a map, over the faces in the region weighted by their clipped area (§9 of the design).
 struct MapQuality {
-  double l2_stretch = 1;         ///< Sander et al. 2001, normalised: an isometry scores 1.
+  double l2_stretch = 1;  ///< Sander et al. 2001, normalised: an isometry scores 1.
   double linf_stretch = 1;
-  double angle_distortion = 1;   ///< Area mean of sigma1 / sigma2.
-  double area_distortion = 1;    ///< Area mean of max(s1 s2, 1 / (s1 s2)).
-  std::uint32_t flipped_plane = 0;   ///< Triangles turned over in the embedding.
-  std::uint32_t flipped_image = 0;   ///< Triangles turned over in the image.
-  double coverage = 0;           ///< Share of the region's area that lands on the surface.
-  double area = 0;               ///< Surface area of the region, scene units squared.
+  double angle_distortion = 1;           ///< Area mean of sigma1 / sigma2.
+  double area_distortion = 1;            ///< Area mean of max(s1 s2, 1 / (s1 s2)).
+  std::uint32_t flipped_plane = 0;       ///< Triangles turned over in the embedding.
+  std::uint32_t flipped_image = 0;       ///< Triangles turned over in the image.
+  double coverage = 0;                   ///< Share of the region's area that lands on the surface.
+  double area = 0;                       ///< Surface area of the region, scene units squared.
   std::vector<double> feature_residual;  ///< Pixels, per feature, in the exact map.
 };
 
@@ -65,12 +65,12 @@ struct SolveTimes {
 /// A solved decal: the patch and its map into the image.
 struct DecalMap {
   Patch patch;
-  IdVector<PatchVertexId, Vec2> plane;    ///< The aligned embedding.
-  IdVector<PatchVertexId, Vec2> image;    ///< warp(plane).
-  Warp warp;                              ///< plane -> image, exact everywhere.
-  IdVector<PatchFaceId, char> linear;     ///< The linear map stands for the warp (to 0.02 px).
-  IdVector<PatchFaceId, char> textured;   ///< The face meets the region (and is no bridged hole).
-  IdVector<PatchFaceId, double> depth;    ///< Order of overlapping faces.
+  IdVector<PatchVertexId, Vec2> plane;   ///< The aligned embedding.
+  IdVector<PatchVertexId, Vec2> image;   ///< warp(plane).
+  Warp warp;                             ///< plane -> image, exact everywhere.
+  IdVector<PatchFaceId, char> linear;    ///< The linear map stands for the warp (to 0.02 px).
+  IdVector<PatchFaceId, char> textured;  ///< The face meets the region (and is no bridged hole).
+  IdVector<PatchFaceId, double> depth;   ///< Order of overlapping faces.
   FeatureGraph graph;
   Coverage status = Coverage::not_converged;
   MapQuality quality;
@@ -82,6 +82,7 @@ struct DecalMap {
 /// Solves one decal: "method": "applique" (§2 to §6 of the design). Cost follows the patch, not the surface.
 /// Errors, each naming the decal and the features: feature_outside_region, features_coincide, size_missing,
 /// features_disconnected, features_mirrored, not_solved.
-Result<DecalMap> solve_decal(const SurfaceMesh& surface, const DecalInput& input, const SolveOptions& options = {});
+Result<DecalMap> solve_decal(const SurfaceMesh& surface, const DecalInput& input,
+                             const SolveOptions& options = {});
 
 }  // namespace applique

@@ -2,8 +2,9 @@
 
 #include <string>
 #include <string_view>
-#include <tl/expected.hpp>
 #include <utility>
+
+#include <tl/expected.hpp>
 
 namespace applique {
 
@@ -73,18 +74,18 @@ struct Warning {
 /// Unwraps a Result into `declaration`, or returns its error from the enclosing function.
 #define APPLIQUE_TRY(declaration, expression) \
   APPLIQUE_TRY_IMPL(APPLIQUE_CONCAT(applique_result_, __LINE__), declaration, expression)
-#define APPLIQUE_TRY_IMPL(result, declaration, expression)                    \
-  auto result = (expression);                                                 \
+#define APPLIQUE_TRY_IMPL(result, declaration, expression)                          \
+  auto result = (expression);                                                       \
   if (!result) return tl::unexpected<::applique::Error>(std::move(result.error())); \
   declaration = std::move(*result)
 #define APPLIQUE_CONCAT(a, b) APPLIQUE_CONCAT_IMPL(a, b)
 #define APPLIQUE_CONCAT_IMPL(a, b) a##b
 
 /// The same for Result<void>.
-#define APPLIQUE_CHECK(expression)                                                              \
-  do {                                                                                          \
-    if (auto applique_check = (expression); !applique_check)                                    \
-      return tl::unexpected<::applique::Error>(std::move(applique_check.error()));              \
+#define APPLIQUE_CHECK(expression)                                                 \
+  do {                                                                             \
+    if (auto applique_check = (expression); !applique_check)                       \
+      return tl::unexpected<::applique::Error>(std::move(applique_check.error())); \
   } while (false)
 
 namespace applique {

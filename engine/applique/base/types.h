@@ -1,8 +1,9 @@
 #pragma once
 
-#include <Eigen/Core>
 #include <complex>
 #include <cstdint>
+
+#include <Eigen/Core>
 
 namespace applique {
 
@@ -20,7 +21,11 @@ struct Pixel {
 };
 
 /// 2-D cross product: positive when b lies counter-clockwise of a.
-inline double cross(Vec2 a, Vec2 b) { return a.real() * b.imag() - a.imag() * b.real(); }
-inline double dot(Vec2 a, Vec2 b) { return a.real() * b.real() + a.imag() * b.imag(); }
+inline double cross(Vec2 a, Vec2 b) {
+  return a.real() * b.imag() - a.imag() * b.real();
+}
+inline double dot(Vec2 a, Vec2 b) {
+  return a.real() * b.real() + a.imag() * b.imag();
+}
 
 }  // namespace applique

@@ -11,13 +11,15 @@
 
 namespace applique {
 
-/// An image in memory: RGBA with straight alpha, values as stored (colour is sRGB-encoded), row by row from the
-/// top. Every channel has 16 bits; what came from 8 bits is held times 257, so that it goes back unchanged.
+/// An image in memory: RGBA with straight alpha, values as stored (colour is sRGB-encoded), row by row from
+/// the top. Every channel has 16 bits; what came from 8 bits is held times 257, so that it goes back
+/// unchanged.
 struct Image {
-  int width = 0;     ///< Pixels.
-  int height = 0;    ///< Pixels.
-  int channels = 4;  ///< Channels of the file: 1 grey, 2 grey + alpha, 3 RGB, 4 RGBA. Missing alpha is opaque.
-  int bits = 8;      ///< Bits a channel in the file: 8 or 16.
+  int width = 0;   ///< Pixels.
+  int height = 0;  ///< Pixels.
+  int channels =
+      4;         ///< Channels of the file: 1 grey, 2 grey + alpha, 3 RGB, 4 RGBA. Missing alpha is opaque.
+  int bits = 8;  ///< Bits a channel in the file: 8 or 16.
   std::vector<std::uint16_t> rgba;  ///< 4 * width * height.
 
   [[nodiscard]] bool has_alpha() const { return channels == 2 || channels == 4; }
@@ -30,8 +32,8 @@ struct Image {
 /// An image of one colour (16-bit RGBA), 4 channels of 8 bits.
 Image make_image(int width, int height, std::array<std::uint16_t, 4> colour);
 
-/// Reads any format that OpenImageIO knows (PNG with palettes, JPEG, WebP, TIFF, …). Floating-point images are
-/// turned down. Errors: file_unreadable, image_invalid (with OpenImageIO's reason).
+/// Reads any format that OpenImageIO knows (PNG with palettes, JPEG, WebP, TIFF, …). Floating-point images
+/// are turned down. Errors: file_unreadable, image_invalid (with OpenImageIO's reason).
 Result<Image> read_image(const std::filesystem::path& path);
 
 /// The same from bytes in memory; `name` stands for the file in errors.

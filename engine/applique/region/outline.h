@@ -11,9 +11,9 @@ namespace applique {
 /// The whole image: its four corners.
 std::vector<Pixel> rectangle_outline(const Image& image);
 
-/// One simple closed curve around every pixel whose alpha (0..1) is over `threshold`: the outline traced along
-/// pixel edges, several islands joined by thin bridges (shortest first), holes ignored; then simplified to at
-/// most 0.75 px away from the traced curve and never inward of an opaque pixel. Errors: region_empty.
+/// One simple closed curve around every pixel whose alpha (0..1) is over `threshold`: the outline traced
+/// along pixel edges, several islands joined by thin bridges (shortest first), holes ignored; then simplified
+/// to at most 0.75 px away from the traced curve and never inward of an opaque pixel. Errors: region_empty.
 Result<std::vector<Pixel>> alpha_outline(const Image& image, double threshold);
 
 }  // namespace applique

@@ -11,9 +11,9 @@
 
 namespace applique {
 
-/// The part of the image that is stuck on the surface: the closed set bounded by one simple polygon (§2 of the
-/// paper), in the decal's plane. All yes-or-no answers come from exact predicates; queries use a grid over the
-/// polygon's edges, so that they do not slow down with the number of its vertices.
+/// The part of the image that is stuck on the surface: the closed set bounded by one simple polygon (§2 of
+/// the paper), in the decal's plane. All yes-or-no answers come from exact predicates; queries use a grid
+/// over the polygon's edges, so that they do not slow down with the number of its vertices.
 class Region {
  public:
   /// `contour` in pixels, either orientation, not repeated at the end; consecutive duplicates are dropped.
@@ -31,8 +31,8 @@ class Region {
 
   /// Whether z lies in the closed region.
   [[nodiscard]] bool contains(Vec2 z) const;
-  /// Whether the whole closed segment lies in the closed region (§2.2 of the design): it may touch the contour
-  /// but not cross it.
+  /// Whether the whole closed segment lies in the closed region (§2.2 of the design): it may touch the
+  /// contour but not cross it.
   [[nodiscard]] bool contains_segment(Vec2 a, Vec2 b) const;
   /// Whether the closed segment has a point in the region's interior.
   [[nodiscard]] bool meets_segment(Vec2 a, Vec2 b) const;

@@ -12,22 +12,22 @@
 
 namespace applique {
 
-/// A point of a texture, in texels: origin at its top-left corner, v down, the first texel's centre (0.5, 0.5).
-/// Not yet wrapped: may lie outside the texture.
+/// A point of a texture, in texels: origin at its top-left corner, v down, the first texel's centre (0.5,
+/// 0.5). Not yet wrapped: may lie outside the texture.
 using Texel = std::array<double, 2>;
 
 enum class WrapMode : std::uint32_t { repeat, clamp, mirror };
 enum class BlendMode : std::uint32_t { normal, multiply, screen };
 
 /// One patch triangle laid out in a texture. What is written at a texel depends on the exact map there: its
-/// barycentrics in `texel` give a plane point from `plane`, which the warp carries to the image; where `linear`,
-/// interpolating `image` does as well (to 0.02 px).
+/// barycentrics in `texel` give a plane point from `plane`, which the warp carries to the image; where
+/// `linear`, interpolating `image` does as well (to 0.02 px).
 struct TransferFace {
   std::array<Texel, 3> texel;  ///< Either orientation.
   std::array<Vec2, 3> plane;
-  std::array<Vec2, 3> image;   ///< warp(plane), plane units (ImageFrame turns them into pixels).
+  std::array<Vec2, 3> image;  ///< warp(plane), plane units (ImageFrame turns them into pixels).
   bool linear = true;
-  std::uint32_t sheet = 0;     ///< Rank by depth among overlapping patch faces: larger is above.
+  std::uint32_t sheet = 0;  ///< Rank by depth among overlapping patch faces: larger is above.
 };
 
 /// One decal's share of one texture.
@@ -45,9 +45,9 @@ struct Transfer {
 
 /// What a transfer did, and, when asked for, the image point of each covered texel.
 struct TransferResult {
-  std::uint64_t covered_texels = 0;   ///< Texels whose centre lies in a face.
-  std::uint64_t gutter_texels = 0;    ///< Texels outside every island that were filled.
-  std::uint64_t shared_texels = 0;    ///< Covered texels that a foreign triangle covers too (UV overlap).
+  std::uint64_t covered_texels = 0;  ///< Texels whose centre lies in a face.
+  std::uint64_t gutter_texels = 0;   ///< Texels outside every island that were filled.
+  std::uint64_t shared_texels = 0;   ///< Covered texels that a foreign triangle covers too (UV overlap).
   struct Sample {
     std::uint32_t x, y;  ///< The texel, wrapped.
     Pixel image;
@@ -55,8 +55,8 @@ struct TransferResult {
   std::vector<Sample> samples;  ///< Row by row; empty unless asked for.
 };
 
-/// The double-precision CPU twin of GpuTransfer: composites the decal into `texture`, in place. Texels that it
-/// does not change keep their value bit for bit.
+/// The double-precision CPU twin of GpuTransfer: composites the decal into `texture`, in place. Texels that
+/// it does not change keep their value bit for bit.
 TransferResult transfer_on_cpu(const Transfer& transfer, Image& texture, bool keep_samples = false);
 
 }  // namespace applique

@@ -9,14 +9,15 @@
 
 namespace applique {
 
-/// The warp of the plane that carries the embedded features exactly to their image points: the pathline flow of
-/// a time-dependent vector field (§5.1.1 of the paper), written in complex form (§3.1 of the design) and run in
-/// the direction that is needed: plane -> image. Immutable and cheap to evaluate; the GPU gets the same tables.
+/// The warp of the plane that carries the embedded features exactly to their image points: the pathline flow
+/// of a time-dependent vector field (§5.1.1 of the paper), written in complex form (§3.1 of the design) and
+/// run in the direction that is needed: plane -> image. Immutable and cheap to evaluate; the GPU gets the
+/// same tables.
 ///
 /// Time [0, 1] is cut into `steps` equal steps of the classical Runge-Kutta scheme of order 4. Each step has
 /// three stage times (its start, middle and end): stage 3 * step + {0, 1, 2}.
 struct Warp {
-  std::uint32_t steps = 0;     ///< 0: the identity.
+  std::uint32_t steps = 0;  ///< 0: the identity.
   std::uint32_t features = 0;
   std::vector<FeaturePair> pairs;
   std::vector<Vec2> position;  ///< [stage * features + feature]: where the feature is.
