@@ -13,7 +13,8 @@ class Region;
 
 /// The decal's image ready to be sampled: linear light, premultiplied alpha, cut by the region's contour (its
 /// coverage of each pixel, anti-aliased, multiplies the alpha), with a mip pyramid of box-filtered levels.
-/// Outside level 0 the image is transparent.
+/// Outside level 0 the image is transparent: a texel of level k is the mean of the 2^k x 2^k pixels at (x, y)
+/// * 2^k, and each level has half the size of the one below, rounded up.
 struct DecalImage {
   struct Level {
     std::uint32_t offset;  ///< First texel in `texels`.
