@@ -1,0 +1,25 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <span>
+#include <string_view>
+
+#include "applique/base/error.h"
+
+namespace applique {
+
+/// Writes a file so that nobody ever sees half of it: to a temporary file beside it (".NAME.PID.tmp"), then
+/// renamed. The temporary file is removed on failure. Errors: output_unwritable, with the system's reason.
+Result<void> write_file(const std::filesystem::path& path, std::span<const std::uint8_t> bytes);
+Result<void> write_file(const std::filesystem::path& path, std::string_view text);
+
+/// Whether `path` could be written: its folder exists and allows it, and it is no folder itself. For asking
+/// before the work rather than after it. Errors: output_unwritable.
+Result<void> check_writable(const std::filesystem::path& path);
+
+/// From here on an interrupt (SIGINT, SIGTERM) removes the temporary file that is being written, and ends the
+/// process.
+void remove_temporary_on_interrupt();
+
+}  // namespace applique
