@@ -8,6 +8,7 @@
 #include "applique/base/error.h"
 #include "applique/base/types.h"
 #include "applique/image/image_frame.h"
+#include "applique/region/edge_grid.h"
 
 namespace applique {
 
@@ -24,8 +25,8 @@ class Region {
   [[nodiscard]] const ImageFrame& frame() const { return frame_; }
   /// The polygon in the plane, counter-clockwise.
   [[nodiscard]] const std::vector<Vec2>& polygon() const { return polygon_; }
-  /// The polygon in pixels, in the order of `polygon()`.
-  [[nodiscard]] std::vector<Pixel> contour() const;
+  /// The polygon in pixels, in the order of `polygon()`, with the coordinates that were given.
+  [[nodiscard]] const std::vector<Pixel>& contour() const { return contour_; }
   [[nodiscard]] double area() const { return area_; }          ///< Plane units squared.
   [[nodiscard]] double diameter() const { return diameter_; }  ///< Diagonal of the bounding box, plane units.
 
@@ -42,11 +43,29 @@ class Region {
   [[nodiscard]] double signed_distance(Vec2 z) const;
 
  private:
-  // The implementer chooses the grid; add private members freely.
+  /// How a segment meets the contour.
+  struct Contact {
+    bool touches = false;  ///< The contour at all.
+    bool leaves = false;   ///< From a contact it goes on outside the closed region.
+    bool enters = false;   ///< From a contact it goes on in the interior.
+  };
+  [[nodiscard]] Contact contact_of(Vec2 a, Vec2 b) const;
+  void add_edge_contact(std::uint32_t edge, Vec2 a, Vec2 b, Contact& contact) const;
+  [[nodiscard]] Vec2 vertex(std::size_t i) const { return polygon_[i == polygon_.size() ? 0 : i]; }
+  [[nodiscard]] bool crosses_edge(Vec2 a, Vec2 b, std::uint32_t edge) const;
+  void classify_cells();
+  void measure_rings();
+
   ImageFrame frame_;
   std::vector<Vec2> polygon_;
+  std::vector<Pixel> contour_;
   double area_ = 0;
   double diameter_ = 0;
+  Vec2 low_, high_;  ///< The bounding box.
+  EdgeGrid grid_;
+  std::vector<Vec2> references_;     ///< By cell: a point of it that is not on the contour.
+  std::vector<char> inside_;         ///< By cell: whether its reference is inside.
+  std::vector<std::int32_t> rings_;  ///< By cell: rings of cells around it before one with an edge.
 };
 
 }  // namespace applique
