@@ -1,0 +1,36 @@
+#pragma once
+
+#include <vector>
+
+#include "applique/embed/disc_geometry.h"
+
+namespace applique {
+
+/// What an embedding keeps: lengths as well as angles, or angles only.
+enum class Energy { isometric, conformal };
+
+/// Which step of the ladder the embedding came from.
+enum class EmbeddingRung {
+  conformal,  ///< Boundary-first flattening as asked for.
+  isometric,  ///< ARAP as asked for.
+  blended,    ///< ARAP folded; the way from the flip-free map towards it was cut short before the first fold.
+  circle,     ///< The conformal map folded; the flip-free map on a circle took its place.
+};
+
+struct Embedding {
+  std::vector<Vec2> plane;  ///< Per vertex; the disc's own scale, any position and rotation.
+  EmbeddingRung rung = EmbeddingRung::conformal;
+  std::size_t flips = 0;  ///< Triangles turned over all the same (§4.3 of the design).
+};
+
+struct EmbedOptions {
+  Energy energy = Energy::isometric;
+  int max_iterations = 30;  ///< Of ARAP.
+  double tolerance = 1e-4;  ///< Of ARAP, share of the mean edge length.
+};
+
+/// Embeds the disc in the plane with a free boundary (§5.1 of the paper; §4.2 and §4.3 of the design):
+/// conformal, then as rigid as possible; turned-over triangles are looked for after each solve.
+Embedding embed_disc(const DiscGeometry& disc, const EmbedOptions& options = {});
+
+}  // namespace applique

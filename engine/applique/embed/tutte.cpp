@@ -1,0 +1,60 @@
+#include "applique/embed/tutte.h"
+
+#include <cmath>
+#include <numbers>
+
+#include <Eigen/SparseLU>
+
+namespace applique {
+
+std::vector<Vec2> embed_on_circle(const DiscGeometry& disc) {
+  const std::size_t rim = disc.boundary.size();
+  std::vector<int> place(disc.vertices, -1);
+  for (std::size_t i = 0; i < rim; ++i) place[disc.boundary[i]] = static_cast<int>(i);
+
+  // Arc length along the boundary.
+  std::vector<double> along(rim + 1, 0), length(rim, 0);
+  for (std::size_t t = 0; t < disc.faces.size(); ++t)
+    for (int k = 0; k < 3; ++k) {
+      const int a = place[disc.faces[t][(k + 1) % 3]], b = place[disc.faces[t][(k + 2) % 3]];
+      if (a >= 0 && b == static_cast<int>((a + 1) % rim)) length[a] = disc.lengths[t][k];
+    }
+  for (std::size_t i = 0; i < rim; ++i) along[i + 1] = along[i] + length[i];
+  const double radius = std::sqrt(disc.area / std::numbers::pi);
+  std::vector<Vec2> plane(disc.vertices);
+  for (std::size_t i = 0; i < rim; ++i)
+    plane[disc.boundary[i]] = std::polar(radius, 2 * std::numbers::pi * along[i] / along[rim]);
+
+  std::vector<int> row(disc.vertices, -1);
+  int inside = 0;
+  for (std::size_t v = 0; v < disc.vertices; ++v)
+    if (place[v] < 0) row[v] = inside++;
+  if (inside == 0) return plane;
+  std::vector<Eigen::Triplet<double>> entries;
+  Eigen::MatrixX2d right = Eigen::MatrixX2d::Zero(inside, 2);
+  for (std::size_t t = 0; t < disc.faces.size(); ++t)
+    for (int k = 0; k < 3; ++k) {
+      const int v = disc.faces[t][k];
+      if (row[v] < 0) continue;
+      const double half = std::tan(0.5 * disc.angle(t, k));
+      for (int other : {(k + 1) % 3, (k + 2) % 3}) {
+        const int w = disc.faces[t][other];
+        // The edge from corner k to `other` is opposite the third corner.
+        const double weight = half / disc.lengths[t][3 - k - other];
+        entries.emplace_back(row[v], row[v], weight);
+        if (row[w] >= 0)
+          entries.emplace_back(row[v], row[w], -weight);
+        else
+          right.row(row[v]) += weight * Eigen::RowVector2d(plane[w].real(), plane[w].imag());
+      }
+    }
+  Eigen::SparseMatrix<double> matrix(inside, inside);
+  matrix.setFromTriplets(entries.begin(), entries.end());
+  const Eigen::SparseLU<Eigen::SparseMatrix<double>> solver(matrix);
+  const Eigen::MatrixX2d solved = solver.solve(right);
+  for (std::size_t v = 0; v < disc.vertices; ++v)
+    if (row[v] >= 0) plane[v] = Vec2(solved(row[v], 0), solved(row[v], 1));
+  return plane;
+}
+
+}  // namespace applique
