@@ -12,22 +12,26 @@
 #include "applique/image/image.h"
 #include "applique/surface/surface_mesh.h"
 #include "applique/transfer/transfer.h"
+
 #include "document.h"
 
 namespace applique {
 
-/// The triangles of one primitive under one node, in scene space at the rest pose (node transforms, the skin's
-/// joints at their own transforms, the morph targets' default weights).
+/// The triangles of one primitive under one node, in scene space at the rest pose (node transforms, the
+/// skin's joints at their own transforms, the morph targets' default weights).
 struct ModelPart {
   std::size_t node = 0;       ///< Index in the document.
   std::size_t mesh = 0;       ///< Index in the document.
   std::size_t primitive = 0;  ///< Index in the mesh.
   std::optional<std::size_t> material;
-  std::vector<Vec3> positions;                ///< Scene space, one per glTF vertex.
-  std::vector<Vec3> normals;                  ///< Unit; from the file or computed.
-  std::vector<std::array<double, 2>> uvs;     ///< Of the base-colour texture, KHR_texture_transform applied, in
-                                              ///< texture space [0,1] before wrapping. Empty: no UVs.
-  std::vector<std::array<std::uint32_t, 3>> triangles;  ///< Lists, strips and fans alike; winding seen from outside.
+  std::vector<Vec3> positions;             ///< Scene space, one per glTF vertex.
+  std::vector<Vec3> normals;               ///< Unit; from the file or computed.
+  std::vector<std::array<double, 2>> uvs;  ///< Of the base-colour texture, KHR_texture_transform applied, in
+                                           ///< texture space [0,1] before wrapping. Empty: no UVs.
+  std::vector<std::array<std::uint32_t, 3>> triangles;  ///< Lists, strips and fans alike, in drawing order;
+                                                        ///< winding seen from outside.
+  bool mirrored =
+      false;  ///< The node mirrors: corners 1 and 2 of each triangle are exchanged against the file.
 };
 
 /// How a material shows its base colour.
@@ -55,9 +59,12 @@ struct Model {
   [[nodiscard]] double diagonal() const { return (upper - lower).norm(); }
 };
 
-/// Reads a .glb or .gltf with its files. Errors: file_unreadable, model_invalid (names the accessor, node, …),
-/// model_unsupported (names the extension or format and what to do).
+/// Reads a .glb or .gltf with its files. Errors: file_unreadable, model_invalid (names the accessor, node,
+/// …), model_unsupported (names the extension or format and what to do).
 Result<Model> load_model(const std::filesystem::path& path);
+
+/// The same for a document in memory (an edited one, say).
+Result<Model> decode_model(Document document);
 
 /// Decodes an image of the document. Errors as read_image's, naming the image.
 Result<Image> load_model_image(const Model& model, std::size_t image);
@@ -74,8 +81,8 @@ struct ModelSurface {
   [[nodiscard]] const Source& source(FaceId f) const { return sources[mesh.source[f]]; }
 };
 
-/// Welds the parts whose node and material are allowed; an empty list allows all. Names that match nothing are an
-/// error of the caller's to check first.
+/// Welds the parts whose node and material are allowed; an empty list allows all. Names that match nothing
+/// are an error of the caller's to check first.
 ModelSurface build_surface(const Model& model, const std::vector<std::size_t>& nodes = {},
                            const std::vector<std::size_t>& materials = {});
 
