@@ -1,0 +1,275 @@
+#include "overlay_mesh.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <utility>
+
+namespace applique {
+namespace {
+
+using Triangle = std::array<std::uint32_t, 3>;
+using Edge = std::pair<std::uint32_t, std::uint32_t>;
+
+Edge edge_between(std::uint32_t a, std::uint32_t b) {
+  return {std::min(a, b), std::max(a, b)};
+}
+
+/// The growing mesh; the triangles are linear in the plane.
+struct Builder {
+  std::vector<Vec3> positions;
+  std::vector<Vec3> normals;  ///< Any length.
+  std::vector<Vec2> plane;
+  std::vector<Vec2> image;  ///< Plane units.
+  std::vector<Triangle> triangles;
+
+  /// A vertex on an edge, t of the way from a to b; its image is exact only after the caller set it.
+  std::uint32_t add_between(std::uint32_t a, std::uint32_t b, double t) {
+    positions.emplace_back((1 - t) * positions[a] + t * positions[b]);
+    normals.emplace_back((1 - t) * normals[a].normalized() + t * normals[b].normalized());
+    plane.push_back((1 - t) * plane[a] + t * plane[b]);
+    image.push_back((1 - t) * image[a] + t * image[b]);
+    return static_cast<std::uint32_t>(positions.size() - 1);
+  }
+};
+
+Builder gather_faces(const Model& model, const SolvedDecal& decal) {
+  const DecalMap& map = decal.map;
+  Builder mesh;
+  IdVector<PatchVertexId, std::uint32_t> index(map.patch.vertices.size(), ~0U);
+  for (const PatchFaceId f : ids<PatchFaceId>(map.patch.faces.size())) {
+    const PatchFace& face = map.patch.faces[f];
+    if (map.textured[f] == 0 || !face.mesh_face.valid()) continue;
+    const auto& source = decal.surface->source(face.mesh_face);
+    const ModelPart& part = model.parts[source.part];
+    const auto corners = decal.surface->mesh.corners(face.mesh_face);
+    const double area = (corners[1] - corners[0]).cross(corners[2] - corners[0]).norm();
+    Triangle triangle = {};
+    for (std::size_t k = 0; k < 3; ++k) {
+      const PatchVertexId vertex = face.vertices[k];
+      if (index[vertex] == ~0U) {
+        index[vertex] = static_cast<std::uint32_t>(mesh.positions.size());
+        mesh.positions.push_back(corners[k]);
+        mesh.normals.emplace_back(Vec3::Zero());
+        mesh.plane.push_back(map.plane[vertex]);
+        mesh.image.push_back(map.image[vertex]);
+      }
+      triangle[k] = index[vertex];
+      mesh.normals[triangle[k]] += area * part.normals[part.triangles[source.triangle][k]];
+    }
+    mesh.triangles.push_back(triangle);
+  }
+  return mesh;
+}
+
+/// Divides edges, for both their faces at once, until every triangle is linear to `max_deviation` plane
+/// units.
+class Divider {
+ public:
+  Divider(Builder& mesh, const Warp& warp, double max_deviation)
+      : mesh_(&mesh), warp_(&warp), max_deviation_(max_deviation) {}
+
+  void run() {
+    constexpr int max_rounds = 10;  // halves an edge a thousandfold
+    for (int round = 0; round < max_rounds; ++round) {
+      middles_.clear();
+      for (const Triangle& triangle : mesh_->triangles) mark(triangle);
+      if (middles_.empty()) return;
+      std::vector<Triangle> divided;
+      for (const Triangle& triangle : mesh_->triangles) divide(triangle, divided);
+      mesh_->triangles = std::move(divided);
+    }
+  }
+
+ private:
+  [[nodiscard]] bool deviates(const Triangle& t, const std::array<double, 3>& weights) const {
+    Vec2 plane = 0;
+    Vec2 image = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      plane += weights[k] * mesh_->plane[t[k]];
+      image += weights[k] * mesh_->image[t[k]];
+    }
+    return std::abs((*warp_)(plane)-image) > max_deviation_;
+  }
+
+  [[nodiscard]] bool edge_deviates(const Triangle& t, std::size_t a, std::size_t b) const {
+    for (const double s : {0.25, 0.5, 0.75}) {
+      std::array<double, 3> weights = {0, 0, 0};
+      weights[a] = 1 - s;
+      weights[b] = s;
+      if (deviates(t, weights)) return true;
+    }
+    return false;
+  }
+
+  void mark_edge(std::uint32_t a, std::uint32_t b) {
+    const auto [middle, fresh] = middles_.try_emplace(edge_between(a, b));
+    if (!fresh) return;
+    middle->second = mesh_->add_between(a, b, 0.5);
+    mesh_->image.back() = (*warp_)(mesh_->plane.back());
+  }
+
+  void mark(const Triangle& t) {
+    bool marked = false;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::size_t next = (k + 1) % 3;
+      if (!edge_deviates(t, k, next)) continue;
+      mark_edge(t[k], t[next]);
+      marked = true;
+    }
+    if (marked) return;
+    // Linear along its edges, yet not inside: the longest edge goes.
+    constexpr std::array<std::array<double, 3>, 4> inside = {
+        {{1.0 / 3, 1.0 / 3, 1.0 / 3}, {0.5, 0.25, 0.25}, {0.25, 0.5, 0.25}, {0.25, 0.25, 0.5}}};
+    if (std::none_of(inside.begin(), inside.end(), [&](const auto& weights) { return deviates(t, weights); }))
+      return;
+    std::size_t longest = 0;
+    const auto length = [&](std::size_t k) {
+      return std::abs(mesh_->plane[t[k]] - mesh_->plane[t[(k + 1) % 3]]);
+    };
+    for (std::size_t k = 1; k < 3; ++k)
+      if (length(k) > length(longest)) longest = k;
+    mark_edge(t[longest], t[(longest + 1) % 3]);
+  }
+
+  void divide(const Triangle& t, std::vector<Triangle>& out) const {
+    std::array<std::uint32_t, 3> middle = {};  // of edge k, from corner k to corner k + 1
+    std::array<bool, 3> split = {};
+    int splits = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto found = middles_.find(edge_between(t[k], t[(k + 1) % 3]));
+      split[k] = found != middles_.end();
+      if (!split[k]) continue;
+      middle[k] = found->second;
+      ++splits;
+    }
+    if (splits == 0) {
+      out.push_back(t);
+    } else if (splits == 3) {
+      out.insert(out.end(), {{t[0], middle[0], middle[2]},
+                             {middle[0], t[1], middle[1]},
+                             {middle[2], middle[1], t[2]},
+                             {middle[0], middle[1], middle[2]}});
+    } else if (splits == 1) {
+      const std::size_t k = split[0] ? 0 : split[1] ? 1 : 2;
+      const std::uint32_t apex = t[(k + 2) % 3];
+      out.insert(out.end(), {{t[k], middle[k], apex}, {middle[k], t[(k + 1) % 3], apex}});
+    } else {
+      const std::size_t whole = !split[0] ? 0 : !split[1] ? 1 : 2;  // the edge that stays
+      const std::uint32_t a = t[whole];
+      const std::uint32_t b = t[(whole + 1) % 3];
+      const std::uint32_t c = t[(whole + 2) % 3];
+      const std::uint32_t bc = middle[(whole + 1) % 3];
+      const std::uint32_t ca = middle[(whole + 2) % 3];
+      out.insert(out.end(), {{ca, bc, c}, {a, b, bc}, {a, bc, ca}});
+    }
+  }
+
+  Builder* mesh_;
+  const Warp* warp_;
+  double max_deviation_;
+  std::map<Edge, std::uint32_t> middles_;
+};
+
+/// Keeps what lies on the side of one border of the image where `distance` is not negative.
+class BorderCut {
+ public:
+  BorderCut(Builder& mesh, std::vector<double> distance) : mesh_(&mesh), distance_(std::move(distance)) {}
+
+  void run() {
+    std::vector<Triangle> kept;
+    for (const Triangle& triangle : mesh_->triangles) {
+      std::vector<std::uint32_t> polygon;
+      for (std::size_t k = 0; k < 3; ++k) {
+        const std::uint32_t a = triangle[k];
+        const std::uint32_t b = triangle[(k + 1) % 3];
+        if (distance_[a] >= 0) polygon.push_back(a);
+        if ((distance_[a] > 0 && distance_[b] < 0) || (distance_[a] < 0 && distance_[b] > 0))
+          polygon.push_back(crossing(a, b));
+      }
+      for (std::size_t k = 2; k < polygon.size(); ++k)
+        kept.push_back({polygon[0], polygon[k - 1], polygon[k]});
+    }
+    mesh_->triangles = std::move(kept);
+  }
+
+ private:
+  std::uint32_t crossing(std::uint32_t a, std::uint32_t b) {
+    const Edge edge = edge_between(a, b);
+    const auto [found, fresh] = crossings_.try_emplace(edge);
+    if (fresh) {
+      const double from = distance_[edge.first];
+      found->second = mesh_->add_between(edge.first, edge.second, from / (from - distance_[edge.second]));
+    }
+    return found->second;
+  }
+
+  Builder* mesh_;
+  std::vector<double> distance_;
+  std::map<Edge, std::uint32_t> crossings_;
+};
+
+void cut_at_image_border(Builder& mesh, const ImageFrame& frame) {
+  const double half_width = 0.5 * frame.width / frame.pixels_per_unit();
+  const double half_height = 0.5 * frame.height / frame.pixels_per_unit();
+  for (const Vec2 inward : {Vec2(1, 0), Vec2(-1, 0), Vec2(0, 1), Vec2(0, -1)}) {
+    const double extent = inward.imag() == 0 ? half_width : half_height;
+    std::vector<double> distance(mesh.image.size());
+    for (std::size_t i = 0; i < distance.size(); ++i) distance[i] = extent + dot(inward, mesh.image[i]);
+    BorderCut(mesh, std::move(distance)).run();
+  }
+}
+
+/// Without vertices that no triangle uses.
+OverlayMesh compact(const Builder& mesh, const ImageFrame& frame, double offset) {
+  OverlayMesh out;
+  std::vector<std::uint32_t> index(mesh.positions.size(), ~0U);
+  for (const Triangle& triangle : mesh.triangles) {
+    Triangle renumbered = {};
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::uint32_t v = triangle[k];
+      if (index[v] == ~0U) {
+        index[v] = static_cast<std::uint32_t>(out.positions.size());
+        const Vec3 normal = mesh.normals[v].normalized();
+        const Pixel pixel = frame.to_pixel(mesh.image[v]);
+        out.positions.emplace_back(mesh.positions[v] + offset * normal);
+        out.normals.push_back(normal);
+        out.uvs.push_back({pixel.x / frame.width, pixel.y / frame.height});
+      }
+      renumbered[k] = index[v];
+    }
+    out.triangles.push_back(renumbered);
+  }
+  return out;
+}
+
+}  // namespace
+
+OverlayMesh build_overlay_mesh(const Model& model, const SolvedDecal& decal, double offset,
+                               double max_deviation) {
+  const ImageFrame& frame = decal.region.frame();
+  // The test looks at some points of a triangle: a margin for those between them.
+  constexpr double margin = 0.8;
+  Builder mesh = gather_faces(model, decal);
+  Divider(mesh, decal.map.warp, margin * max_deviation / frame.pixels_per_unit()).run();
+  cut_at_image_border(mesh, frame);
+  return compact(mesh, frame, offset);
+}
+
+double default_offset(const Model& model) {
+  return 0.0005 * model.diagonal();
+}
+
+Image overlay_image(const SolvedDecal& decal) {
+  Image image = decal.image;
+  image.channels = 4;
+  const DecalImage cut = make_decal_image(decal.image, decal.region);
+  for (int y = 0; y < image.height; ++y)
+    for (int x = 0; x < image.width; ++x) {
+      const double alpha = cut.texels[static_cast<std::size_t>(y) * image.width + x][3] * decal.job.opacity;
+      image.pixel(x, y)[3] = static_cast<std::uint16_t>(std::lround(std::clamp(alpha, 0.0, 1.0) * 0xffff));
+    }
+  return image;
+}
+
+}  // namespace applique

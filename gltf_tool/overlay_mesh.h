@@ -1,0 +1,36 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "applique/image/image.h"
+
+#include "model.h"
+#include "solve_job.h"
+
+namespace applique {
+
+/// A decal as triangles of its own, in scene space.
+struct OverlayMesh {
+  std::vector<Vec3> positions;
+  std::vector<Vec3> normals;               ///< Unit.
+  std::vector<std::array<double, 2>> uvs;  ///< Image pixels divided by the image's size: [0, 1], v down.
+  std::vector<std::array<std::uint32_t, 3>> triangles;
+};
+
+/// Lays the decal's faces out as a mesh: those that meet the region, divided until the linear texture
+/// coordinates of every triangle lie within `max_deviation` pixels of the exact map (edges are divided for
+/// both their faces at once, so no crack opens), cut at the image's border, and moved by `offset` (scene
+/// units) along the normal, which is the area-weighted mean of the model's normals at a vertex.
+OverlayMesh build_overlay_mesh(const Model& model, const SolvedDecal& decal, double offset,
+                               double max_deviation = 0.25);
+
+/// The offset of an overlay for which the job names none: 0.05 % of the model's diagonal.
+double default_offset(const Model& model);
+
+/// The picture for it: the decal's image, with the alpha multiplied by the region's coverage of each pixel
+/// and by the opacity.
+Image overlay_image(const SolvedDecal& decal);
+
+}  // namespace applique

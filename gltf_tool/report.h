@@ -1,0 +1,48 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "solve_job.h"
+
+namespace applique {
+
+/// What a bake did to one base-colour texture.
+struct TextureReport {
+  std::string material;  ///< Name of its material.
+  int width = 0;         ///< Texels.
+  int height = 0;        ///< Texels.
+  bool created = false;  ///< The material had no base-colour texture before.
+  std::uint64_t covered_texels = 0;
+  std::uint64_t gutter_texels = 0;
+  std::uint64_t shared_texels = 0;
+};
+
+/// How finely the textures under a decal resolve it, along a line.
+struct TexelDensity {
+  double texels_per_unit = 0;   ///< Texels a scene unit.
+  double texels_per_pixel = 0;  ///< Texels an image pixel.
+};
+
+/// What the report tells beyond the solved geometry.
+struct ReportInput {
+  std::string command;                      ///< "bake" or "check".
+  std::optional<std::string> device;        ///< Name of the Vulkan device, if one was used.
+  std::optional<std::string> model_output;  ///< Paths that were written.
+  std::optional<std::string> preview_output;
+  std::optional<std::string> region_output;
+  StageTimes times;  ///< Of the whole run.
+  double total_seconds = 0;
+  std::vector<TextureReport> textures;
+  std::vector<std::optional<TexelDensity>> densities;  ///< By decal; may be empty.
+  std::vector<Warning> warnings;                       ///< Beyond the model's.
+};
+
+/// The report of a run, as report.schema.json describes it.
+nlohmann::ordered_json make_report(const SolvedJob& job, const ReportInput& input);
+
+}  // namespace applique

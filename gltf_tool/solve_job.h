@@ -1,0 +1,55 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "applique/base/error.h"
+#include "applique/decal.h"
+#include "applique/image/image.h"
+#include "applique/region/region.h"
+
+#include "job.h"
+#include "model.h"
+#include "stopwatch.h"
+
+namespace applique {
+
+/// A decal of a job with everything that its geometry needed and gave.
+struct SolvedDecal {
+  DecalJob job;
+  Image image;
+  std::shared_ptr<const ModelSurface>
+      surface;  ///< The surface it may use; decals with the same limits share it.
+  Region region;
+  std::vector<Feature> features;
+  DecalMap map;
+  StageTimes times;
+  std::vector<Warning> warnings;
+};
+
+struct SolvedJob {
+  Job job;
+  Model model;
+  std::vector<SolvedDecal> decals;  ///< In the order of the job.
+  StageTimes times;
+};
+
+/// Told the name of each stage as it begins, and the share of the work that lies behind, 0..1.
+using StageCallback = std::function<void(const std::string& stage, double done)>;
+
+/// The geometry of a job, which `bake` and `check` share: loads the model and the images, cuts out the
+/// regions, puts the features on the surface and solves the decals one after another. Errors: those of
+/// load_model, read_image, alpha_outline, Region::from_contour, resolve_place and solve_decal, each naming
+/// the decal; feature_place_invalid for a node or material that the model does not have (names the near
+/// ones); size_missing.
+Result<SolvedJob> solve_job(const Job& job, const StageCallback& on_stage = {});
+
+/// The indices of the elements of `array` ("nodes", "materials") that the references name; a name may stand
+/// for several. `owner` begins the sentence of an error. Errors: feature_place_invalid.
+Result<std::vector<std::size_t>> resolve_references(const std::vector<Reference>& references,
+                                                    const Document& document, const std::string& array,
+                                                    const std::string& owner);
+
+}  // namespace applique
