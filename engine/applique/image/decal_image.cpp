@@ -1,0 +1,103 @@
+#include "applique/image/decal_image.h"
+
+#include <algorithm>
+#include <cmath>
+#include <thread>
+
+#include "applique/image/coverage.h"
+#include "applique/region/region.h"
+
+namespace applique {
+namespace {
+
+using Texel = std::array<float, 4>;
+
+/// Calls `rows(first, last)` for bands of rows, on several threads where there is enough to do.
+template <class Rows>
+void for_rows(std::uint32_t width, std::uint32_t height, const Rows& rows) {
+  constexpr std::uint64_t texels_a_thread = 100000;
+  const std::uint64_t worth = std::uint64_t{width} * height / texels_a_thread;
+  const auto count = static_cast<std::uint32_t>(
+      std::clamp<std::uint64_t>(worth, 1, std::max(1U, std::thread::hardware_concurrency())));
+  const auto band = [&](std::uint32_t i) {
+    return static_cast<std::uint32_t>(std::uint64_t{height} * i / count);
+  };
+  std::vector<std::jthread> threads;
+  for (std::uint32_t i = 1; i < count; ++i) threads.emplace_back([&, i] { rows(band(i), band(i + 1)); });
+  rows(0, band(1));
+}
+
+const std::vector<float>& linear_table() {
+  static const std::vector<float> table = [] {
+    std::vector<float> values(65536);
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      values[i] = static_cast<float>(srgb_to_linear(static_cast<double>(i) / 65535));
+    }
+    return values;
+  }();
+  return table;
+}
+
+void fill_base(const Image& image, const std::vector<float>& coverage, Texel* texels) {
+  const std::vector<float>& linear = linear_table();
+  for_rows(image.width, image.height, [&](std::uint32_t first, std::uint32_t last) {
+    const std::size_t end = static_cast<std::size_t>(last) * image.width;
+    for (std::size_t i = static_cast<std::size_t>(first) * image.width; i < end; ++i) {
+      const std::uint16_t* in = &image.rgba[4 * i];
+      const float alpha = coverage[i] * static_cast<float>(in[3]) / 65535.0F;
+      texels[i] = {linear[in[0]] * alpha, linear[in[1]] * alpha, linear[in[2]] * alpha, alpha};
+    }
+  });
+}
+
+/// Means of 2 x 2 texels; what the last row or column lacks is transparent.
+void halve(const Texel* in, const DecalImage::Level& fine, const DecalImage::Level& coarse, Texel* out) {
+  for_rows(fine.width, coarse.height, [&](std::uint32_t first, std::uint32_t last) {
+    for (std::uint32_t y = first; y < last; ++y) {
+      const Texel* above = in + std::size_t{2} * y * fine.width;
+      const Texel* below = 2 * y + 1 < fine.height ? above + fine.width : nullptr;
+      for (std::uint32_t x = 0; x < coarse.width; ++x) {
+        const bool pair = 2 * x + 1 < fine.width;
+        Texel& mean = out[std::size_t{y} * coarse.width + x];
+        for (std::size_t k = 0; k < 4; ++k) {
+          float sum = above[2 * x][k];
+          if (pair) sum += above[2 * x + 1][k];
+          if (below) sum += below[2 * x][k];
+          if (below && pair) sum += below[2 * x + 1][k];
+          mean[k] = 0.25F * sum;
+        }
+      }
+    }
+  });
+}
+
+}  // namespace
+
+double srgb_to_linear(double encoded) {
+  return encoded <= 0.04045 ? encoded / 12.92 : std::pow((encoded + 0.055) / 1.055, 2.4);
+}
+
+double linear_to_srgb(double linear) {
+  return linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1 / 2.4) - 0.055;
+}
+
+DecalImage make_decal_image(const Image& image, const Region& region) {
+  DecalImage decal;
+  decal.frame = region.frame();
+  DecalImage::Level level = {0, static_cast<std::uint32_t>(image.width),
+                             static_cast<std::uint32_t>(image.height)};
+  decal.levels.push_back(level);
+  while (level.width > 1 || level.height > 1) {
+    level = {level.offset + level.width * level.height, (level.width + 1) / 2, (level.height + 1) / 2};
+    decal.levels.push_back(level);
+  }
+  decal.texels.resize(std::size_t{level.offset} + 1);
+  fill_base(image, polygon_coverage(region.contour(), image.width, image.height), decal.texels.data());
+  for (std::size_t k = 1; k < decal.levels.size(); ++k) {
+    halve(&decal.texels[decal.levels[k - 1].offset], decal.levels[k - 1], decal.levels[k],
+          &decal.texels[decal.levels[k].offset]);
+  }
+  return decal;
+}
+
+}  // namespace applique
