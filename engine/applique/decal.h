@@ -6,7 +6,10 @@
 
 #include "applique/base/error.h"
 #include "applique/base/types.h"
+#include "applique/embed/embed.h"
+#include "applique/patch/growth.h"
 #include "applique/patch/patch.h"
+#include "applique/quality/map_quality.h"
 #include "applique/region/region.h"
 #include "applique/surface/surface_mesh.h"
 #include "applique/warp/warp.h"
@@ -34,32 +37,14 @@ struct DecalInput {
   std::optional<LoneFrame> lone;  ///< Needed with one feature, ignored with more.
 };
 
-enum class Energy { isometric, conformal };
-
 struct SolveOptions {
   Energy energy = Energy::isometric;
   int max_solves = 60;  ///< Embeddings before giving up.
 };
 
-/// How the growth ended (§2.7 of the design).
-enum class Coverage { covered, clipped_by_boundary, clipped_by_cover, clipped_closed, not_converged };
-
-/// Quality of a map, over the faces in the region weighted by their clipped area (§9 of the design).
-struct MapQuality {
-  double l2_stretch = 1;  ///< Sander et al. 2001, normalised: an isometry scores 1.
-  double linf_stretch = 1;
-  double angle_distortion = 1;           ///< Area mean of sigma1 / sigma2.
-  double area_distortion = 1;            ///< Area mean of max(s1 s2, 1 / (s1 s2)).
-  std::uint32_t flipped_plane = 0;       ///< Triangles turned over in the embedding.
-  std::uint32_t flipped_image = 0;       ///< Triangles turned over in the image.
-  double coverage = 0;                   ///< Share of the region's area that lands on the surface.
-  double area = 0;                       ///< Surface area of the region, scene units squared.
-  std::vector<double> feature_residual;  ///< Pixels, per feature, in the exact map.
-};
-
 /// Seconds by stage.
 struct SolveTimes {
-  double graph = 0, seed = 0, embed = 0, warp = 0, grow = 0, metrics = 0, total = 0;
+  double graph = 0, seed = 0, embed = 0, warp = 0, grow = 0, quality = 0, total = 0;
 };
 
 /// A solved decal: the patch and its map into the image.
@@ -71,6 +56,10 @@ struct DecalMap {
   IdVector<PatchFaceId, char> linear;    ///< The linear map stands for the warp (to 0.02 px).
   IdVector<PatchFaceId, char> textured;  ///< The face meets the region (and is no bridged hole).
   IdVector<PatchFaceId, double> depth;   ///< Order of overlapping faces.
+  /// Weight of each group of features at each vertex, [vertex * groups + group]; they sum to 1. One group:
+  /// all 1.
+  std::uint32_t groups = 1;
+  std::vector<double> influence;
   FeatureGraph graph;
   Coverage status = Coverage::not_converged;
   MapQuality quality;

@@ -1,0 +1,403 @@
+#include "applique/decal.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <set>
+
+#include <fmt/format.h>
+
+#include "applique/base/predicates.h"
+#include "applique/embed/align.h"
+#include "applique/patch/seed.h"
+#include "applique/warp/build_warp.h"
+
+namespace applique {
+namespace {
+
+constexpr std::uint32_t cover_limit = 1;      // one sheet
+constexpr double linear_tolerance_px = 0.02;  // §5.1 of the design
+constexpr double coincident = 1e-6;           // of the region's diameter
+constexpr int most_trims = 3;
+
+/// Adds the time until its end to a counter, in seconds.
+class StageTimer {
+ public:
+  explicit StageTimer(double& total) : total_(total), start_(std::chrono::steady_clock::now()) {}
+  ~StageTimer() {
+    total_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+  }
+  StageTimer(const StageTimer&) = delete;
+  StageTimer& operator=(const StageTimer&) = delete;
+
+ private:
+  double& total_;
+  std::chrono::steady_clock::time_point start_;
+};
+
+std::string feature_name(const DecalInput& input, std::size_t k) {
+  return fmt::format("feature {} at ({:.1f}, {:.1f})", k, input.features[k].image.x,
+                     input.features[k].image.y);
+}
+
+std::string join(const std::vector<std::string>& names) {
+  std::string text;
+  for (std::size_t i = 0; i < names.size(); ++i)
+    text += (i == 0 ? "" : i + 1 == names.size() ? " and " : ", ") + names[i];
+  return text;
+}
+
+Result<void> check_input(const SurfaceMesh& surface, const DecalInput& input,
+                         const std::vector<Vec2>& targets) {
+  const std::string prefix = fmt::format("decal '{}': ", input.name);
+  if (input.features.empty())
+    return fail(ErrorCode::feature_place_invalid,
+                prefix + "has no features; pin at least one point of the image");
+  const double pixels = input.region.frame().pixels_per_unit();
+  for (std::size_t k = 0; k < input.features.size(); ++k) {
+    if (!input.region.contains(targets[k]))
+      return fail(
+          ErrorCode::feature_outside_region,
+          fmt::format("{}{}: outside the contour by {:.1f} px; move it inside or widen the region", prefix,
+                      feature_name(input, k), -input.region.signed_distance(targets[k]) * pixels));
+    for (std::size_t j = 0; j < k; ++j) {
+      if (std::abs(targets[k] - targets[j]) < coincident * input.region.diameter())
+        return fail(ErrorCode::features_coincide,
+                    fmt::format("{}{} and {} are on one spot of the image; remove one of them", prefix,
+                                feature_name(input, j), feature_name(input, k)));
+      const Vec3 a = position_of(surface, input.features[j].surface),
+                 b = position_of(surface, input.features[k].surface);
+      const auto corners = surface.corners(input.features[k].surface.face);
+      const double size = (corners[1] - corners[0]).norm() + (corners[2] - corners[0]).norm();
+      if ((a - b).norm() <= coincident * size)
+        return fail(ErrorCode::features_coincide,
+                    fmt::format("{}{} and {} are on one spot of the surface; remove one of them", prefix,
+                                feature_name(input, j), feature_name(input, k)));
+    }
+  }
+  if (input.features.size() == 1 && !(input.lone && input.lone->width > 0))
+    return fail(
+        ErrorCode::size_missing,
+        prefix +
+            "a single feature fixes neither size nor direction: give \"size\" (the image's width in scene "
+            "units, over 0) and \"up\" (a direction), or pin a second feature");
+  std::vector<std::vector<std::string>> parts;
+  std::vector<std::uint32_t> component;
+  for (std::size_t k = 0; k < input.features.size(); ++k) {
+    const std::uint32_t c = surface.component[surface.faces[input.features[k].surface.face][0]];
+    const auto found = std::find(component.begin(), component.end(), c);
+    if (found == component.end()) {
+      component.push_back(c);
+      parts.emplace_back();
+    }
+    parts[static_cast<std::size_t>(found - component.begin())].push_back(feature_name(input, k));
+  }
+  if (parts.size() > 1) {
+    std::string text;
+    for (std::size_t i = 0; i < parts.size(); ++i) text += (i == 0 ? "" : " from ") + join(parts[i]);
+    return fail(
+        ErrorCode::features_disconnected,
+        fmt::format(
+            "{}the features lie on {} parts of the model that are not connected: {}; place them on one "
+            "connected part, or make a decal for each",
+            prefix, parts.size(), text));
+  }
+  return {};
+}
+
+/// The similarity that gives a lone feature's neighbourhood the wanted size and direction (§3.3 of the
+/// design).
+Result<Similarity> lone_alignment(const SurfaceMesh& surface, const DecalInput& input,
+                                  const ImmersedDisc& disc, PatchFaceId feature_face, Vec2 feature,
+                                  Vec2 target, const std::vector<Vec2>& plane) {
+  // The complex derivative of the embedding at the feature, in the tangent frame whose y axis is `up`.
+  std::set<PatchFaceId> near;
+  for (PatchVertexId v : disc.faces()[feature_face].vertices)
+    for (PatchFaceId q : disc.fan(v)) near.insert(q);
+  Vec3 normal = Vec3::Zero();
+  for (PatchFaceId q : near) {
+    const auto& v = disc.faces()[q].vertices;
+    normal += (disc.position(v[1]) - disc.position(v[0])).cross(disc.position(v[2]) - disc.position(v[0]));
+  }
+  const auto own = surface.corners(input.features[0].surface.face);
+  if (normal.dot((own[1] - own[0]).cross(own[2] - own[0])) <= 0)
+    normal = (own[1] - own[0]).cross(own[2] - own[0]);
+  normal.normalize();
+  const Vec3 up = input.lone->up - input.lone->up.dot(normal) * normal;
+  if (!(up.norm() > 1e-3 * input.lone->up.norm()))
+    return fail(
+        ErrorCode::size_missing,
+        fmt::format("decal '{}': \"up\" points along the surface's normal at the feature; give a direction "
+                    "along the surface",
+                    input.name));
+  const Vec3 y = up.normalized(), x = y.cross(normal);
+  Vec2 derivative = 0;
+  double total = 0;
+  for (PatchFaceId q : near) {
+    const auto& v = disc.faces()[q].vertices;
+    const Vec3 d1 = disc.position(v[1]) - disc.position(v[0]), d2 = disc.position(v[2]) - disc.position(v[0]);
+    const Vec2 a(d1.dot(x), d1.dot(y)), b(d2.dot(x), d2.dot(y));
+    const double twice_area = cross(a, b);
+    if (twice_area <= 0) continue;
+    const Vec2 p = plane[v[1].value] - plane[v[0].value], q2 = plane[v[2].value] - plane[v[0].value];
+    // d/dz of the affine map a -> p, b -> q2, times the area.
+    derivative += Vec2(0, 0.25) * (p * std::conj(b) - q2 * std::conj(a));
+    total += 0.5 * twice_area;
+  }
+  derivative /= total;
+  const ImageFrame& frame = input.region.frame();
+  const double units_per_width = frame.width / frame.pixels_per_unit();
+  const Vec2 scale = units_per_width / input.lone->width / derivative;
+  return Similarity{scale, target - scale * feature};
+}
+
+/// One decal in the making: the state that the growth's iterations share.
+class Solver {
+ public:
+  Solver(const SurfaceMesh& surface, const DecalInput& input, const SolveOptions& options)
+      : surface_(surface), input_(input), options_(options), bridged_(surface) {
+    for (const Feature& feature : input.features)
+      targets_.push_back(input.region.frame().to_plane(feature.image));
+  }
+
+  Result<DecalMap> run() {
+    StageTimer timer(map_.times.total);
+    APPLIQUE_CHECK(check_input(surface_, input_, targets_));
+    {
+      StageTimer stage(map_.times.graph);
+      map_.graph = build_feature_graph(input_.region, targets_);
+    }
+    APPLIQUE_TRY(Seed seed, make_seed());
+    Growth growth(seed.disc, std::move(seed.feature_faces), input_.region, cover_limit);
+    APPLIQUE_CHECK(grow(seed.disc, growth));
+    finish(seed.disc, growth);
+    return std::move(map_);
+  }
+
+ private:
+  Result<Seed> make_seed() {
+    StageTimer stage(map_.times.seed);
+    std::vector<SurfacePoint> places;
+    for (const Feature& feature : input_.features) places.push_back(feature.surface);
+    auto seed = build_seed(bridged_, places, map_.graph.tree, cover_limit);
+    if (seed) return std::move(*seed);
+    const auto [i, j] = seed.error().disconnected;
+    return fail(ErrorCode::features_disconnected,
+                fmt::format("decal '{}': no way along the surface from {} to {}", input_.name,
+                            feature_name(input_, i), feature_name(input_, j)));
+  }
+
+  /// Embeds, aligns and warps the disc as it is: plane_, image_ and map_.warp.
+  Result<void> parameterize(const ImmersedDisc& disc, const Growth& growth) {
+    ++map_.solves;
+    std::vector<Vec2> features(targets_.size());
+    {
+      StageTimer stage(map_.times.embed);
+      Embedding embedding = embed_disc(measure_disc(disc), {options_.energy});
+      rung_ = embedding.rung;
+      flips_ = embedding.flips;
+      for (std::size_t k = 0; k < features.size(); ++k)
+        features[k] =
+            interpolate(disc, growth.feature_faces()[k], input_.features[k].surface, embedding.plane);
+      APPLIQUE_CHECK(align(disc, growth, features, embedding.plane));
+      plane_ = ImagePoints(std::move(embedding.plane));
+    }
+    StageTimer stage(map_.times.warp);
+    built_ = build_warp(features, targets_, map_.graph, probes(features));
+    image_.resize(plane_.size());
+    for (PatchVertexId v : ids<PatchVertexId>(plane_.size())) image_[v] = built_.warp(plane_[v]);
+    return {};
+  }
+
+  Result<void> align(const ImmersedDisc& disc, const Growth& growth, std::vector<Vec2>& features,
+                     std::vector<Vec2>& plane) {
+    Similarity similarity;
+    if (features.size() == 1) {
+      APPLIQUE_TRY(similarity, lone_alignment(surface_, input_, disc, growth.feature_faces()[0], features[0],
+                                              targets_[0], plane));
+    } else {
+      if (is_mirrored(features, targets_))
+        return fail(
+            ErrorCode::features_mirrored,
+            fmt::format(
+                "decal '{}': the features {} run one way round in the image and the other way round on "
+                "the surface, so that the image would have to be mirrored; swap the places of left and "
+                "right, or mirror the image",
+                input_.name, feature_range()));
+      similarity = fit_similarity(features, targets_);
+    }
+    for (Vec2& z : features) z = similarity(z);
+    for (Vec2& z : plane) z = similarity(z);
+    return {};
+  }
+
+  [[nodiscard]] std::string feature_range() const {
+    return fmt::format("0 to {}", input_.features.size() - 1);
+  }
+
+  static Vec2 interpolate(const ImmersedDisc& disc, PatchFaceId q, const SurfacePoint& point,
+                          const std::vector<Vec2>& plane) {
+    Vec2 z = 0;
+    for (int k = 0; k < 3; ++k) z += point.barycentric[k] * plane[disc.faces()[q].vertices[k].value];
+    return z;
+  }
+
+  /// Places between the features, where the warp bends most.
+  [[nodiscard]] std::vector<Vec2> probes(const std::vector<Vec2>& features) const {
+    std::vector<Vec2> probes;
+    for (const auto& [i, j] : map_.graph.planar)
+      for (const double t : {0.25, 0.5, 0.75})
+        probes.push_back(features[i] + t * (features[j] - features[i]));
+    const std::vector<Vec2>& polygon = input_.region.polygon();
+    const std::size_t stride = std::max<std::size_t>(1, polygon.size() / 16);
+    for (std::size_t i = 0; i < polygon.size(); i += stride) probes.push_back(polygon[i]);
+    return probes;
+  }
+
+  /// The loop of §2.6 of the design: parameterize, peel, grow, until the region is covered; then the patch is
+  /// trimmed to the faces that meet the region, so that the result does not depend on the way it came about.
+  Result<void> grow(ImmersedDisc& disc, Growth& growth) {
+    int trims = 0;
+    while (true) {
+      APPLIQUE_CHECK(parameterize(disc, growth));
+      StageTimer stage(map_.times.grow);
+      if (map_.solves >= options_.max_solves) break;
+      auto inside = growth.inside(image_);
+      const std::size_t peeled = trims == 0 ? growth.peel(image_, inside) : 0;
+      const std::size_t added = growth.grow(image_, inside, {});
+      if (added == 0 && peeled == 0) {
+        if (trims == most_trims || growth.trim(image_) == 0) break;
+        ++trims;
+      }
+      growth.compact(image_);
+#ifdef APPLIQUE_CHECK_INVARIANTS
+      APPLIQUE_ASSERT(disc.broken_invariant().empty());
+#endif
+    }
+    map_.status = growth.coverage(image_);
+    return {};
+  }
+
+  void finish(const ImmersedDisc& disc, const Growth& growth) {
+    StageTimer stage(map_.times.quality);
+    for (const PatchFace& face : disc.faces()) {
+      const bool bridge = bridged_.is_bridge(face.mesh_face);
+      map_.patch.faces.push_back(face);
+      if (bridge) map_.patch.faces.raw().back().mesh_face = FaceId();
+      const auto& v = face.vertices;
+      map_.textured.push_back(!bridge &&
+                              input_.region.meets_triangle(image_[v[0]], image_[v[1]], image_[v[2]]));
+    }
+    for (PatchVertexId v : ids<PatchVertexId>(disc.vertex_count())) {
+      const VertexId over = disc.mesh_vertex(v);
+      map_.patch.vertices.push_back(bridged_.is_bridge(over) ? VertexId() : over);
+    }
+    map_.plane = std::move(plane_);
+    map_.image = std::move(image_);
+    map_.warp = std::move(built_.warp);
+    map_.depth.resize(map_.patch.faces.size(), 0);
+    map_.influence.assign(map_.patch.vertices.size(), 1);
+    mark_linear_faces(growth);
+    map_.quality =
+        measure_quality(surface_, map_.patch, map_.plane, map_.image, map_.textured, input_.region);
+    for (std::size_t k = 0; k < targets_.size(); ++k) {
+      const Vec2 at = map_.warp(
+          interpolate(disc, growth.feature_faces()[k], input_.features[k].surface, map_.plane.raw()));
+      map_.quality.feature_residual.push_back(std::abs(at - targets_[k]) *
+                                              input_.region.frame().pixels_per_unit());
+    }
+    warn();
+  }
+
+  /// A face is linear when the warp at its edges' middles and its centroid agrees with interpolation, and no
+  /// feature lies in it (§5.1 of the design).
+  void mark_linear_faces(const Growth& growth) {
+    map_.linear.resize(map_.patch.faces.size(), true);
+    if (map_.warp.steps == 0) return;
+    const double tolerance = linear_tolerance_px / input_.region.frame().pixels_per_unit();
+    const auto bends = [&](std::initializer_list<PatchVertexId> corners) {
+      Vec2 plane = 0, image = 0;
+      for (PatchVertexId v : corners) {
+        plane += map_.plane[v];
+        image += map_.image[v];
+      }
+      const auto n = static_cast<double>(corners.size());
+      return std::abs(map_.warp(plane / n) - image / n) > tolerance;
+    };
+    for (PatchFaceId q : ids<PatchFaceId>(map_.patch.faces.size())) {
+      const PatchFace& face = map_.patch.faces[q];
+      if (!map_.textured[q]) continue;
+      if (bends({face.vertices[0], face.vertices[1], face.vertices[2]})) map_.linear[q] = false;
+      for (int k = 0; k < 3; ++k) {
+        const PatchFaceId across = face.neighbours[k];
+        if (across.valid() && map_.textured[across] && across < q) continue;  // tested from there
+        if (!bends({face.vertices[(k + 1) % 3], face.vertices[(k + 2) % 3]})) continue;
+        map_.linear[q] = false;
+        if (across.valid()) map_.linear[across] = false;
+      }
+    }
+    for (PatchFaceId q : growth.feature_faces()) map_.linear[q] = false;
+  }
+
+  void warn() {
+    const auto add = [&](const char* code, std::string message) {
+      map_.warnings.push_back({code, fmt::format("decal '{}': {}", input_.name, message)});
+    };
+    const double percent = 100 * map_.quality.coverage;
+    switch (map_.status) {
+      case Coverage::covered:
+        break;
+      case Coverage::clipped_by_boundary:
+        add("clipped_by_boundary",
+            fmt::format("the surface ends inside the region; {:.2f} % of it is shown", percent));
+        break;
+      case Coverage::clipped_by_cover:
+        add("clipped_by_cover",
+            fmt::format("the region meets itself on the surface; {:.2f} % of it is shown", percent));
+        break;
+      case Coverage::clipped_closed:
+        add("clipped_closed",
+            fmt::format("the region goes all the way round the surface; {:.2f} % of it is shown", percent));
+        break;
+      case Coverage::not_converged:
+        add("not_converged",
+            fmt::format("stopped after {} solves; {:.2f} % of the region is shown", map_.solves, percent));
+        break;
+    }
+    if (rung_ == EmbeddingRung::blended)
+      add("embedding_blended", "the isometric map folded and was cut short");
+    if (rung_ == EmbeddingRung::circle)
+      add("embedding_on_circle", "the conformal map folded; a flip-free one took its place");
+    if (map_.quality.flipped_plane + map_.quality.flipped_image > 0)
+      add("flipped_triangles", fmt::format("{} triangles are turned over in the embedding and {} in the "
+                                           "image; move the features nearer to "
+                                           "where the image wants them, or add some",
+                                           map_.quality.flipped_plane, map_.quality.flipped_image));
+    for (const PairStress& stress : built_.stressed)
+      add("feature_stress",
+          fmt::format(
+              "{} and {} ask for a scale of {:.2f} and a turn of {:.0f} degrees against their surroundings",
+              feature_name(input_, stress.pair[0]), feature_name(input_, stress.pair[1]), stress.scale,
+              stress.turn * 180 / 3.141592653589793));
+  }
+
+  const SurfaceMesh& surface_;
+  const DecalInput& input_;
+  const SolveOptions& options_;
+  BridgedSurface bridged_;
+  std::vector<Vec2> targets_;  ///< Features in the image, plane units.
+  ImagePoints plane_, image_;
+  BuiltWarp built_;
+  EmbeddingRung rung_ = EmbeddingRung::conformal;
+  std::size_t flips_ = 0;
+  DecalMap map_;
+};
+
+}  // namespace
+
+Result<DecalMap> solve_decal(const SurfaceMesh& surface, const DecalInput& input,
+                             const SolveOptions& options) {
+  return Solver(surface, input, options).run();
+}
+
+}  // namespace applique

@@ -1,0 +1,186 @@
+#include "applique/patch/growth.h"
+
+#include <algorithm>
+
+namespace applique {
+namespace {
+
+constexpr std::size_t most_hole_sides = 64;
+constexpr double largest_hole = 0.5;  // perimeter, share of the region's diameter
+
+/// The apex of the face beyond edge a -> b, in the frame of that edge, from the triangle's own shape.
+Vec2 apex_in_edge_frame(const Vec3& a, const Vec3& b, const Vec3& apex) {
+  const Vec3 edge = b - a, side = apex - a;
+  const double length2 = edge.squaredNorm();
+  return {side.dot(edge) / length2, -side.cross(edge).norm() / length2};
+}
+
+}  // namespace
+
+Growth::Growth(ImmersedDisc& disc, std::vector<PatchFaceId> feature_faces, const Region& region,
+               std::uint32_t cover_limit)
+    : disc_(disc), feature_faces_(std::move(feature_faces)), region_(region), cover_limit_(cover_limit) {}
+
+IdVector<PatchVertexId, char> Growth::inside(const ImagePoints& image) const {
+  IdVector<PatchVertexId, char> inside(disc_.vertex_count(), false);
+  std::vector<PatchVertexId> stack;
+  const auto visit = [&](PatchVertexId v) {
+    if (inside[v] || !region_.contains(image[v])) return;
+    inside[v] = true;
+    stack.push_back(v);
+  };
+  for (PatchFaceId q : feature_faces_)
+    for (PatchVertexId v : disc_.faces()[q].vertices) visit(v);
+  while (!stack.empty()) {
+    const PatchVertexId v = stack.back();
+    stack.pop_back();
+    for (PatchFaceId q : disc_.fan(v))
+      for (PatchVertexId w : disc_.faces()[q].vertices) visit(w);
+  }
+  return inside;
+}
+
+bool Growth::face_meets_region(PatchFaceId q, const ImagePoints& image) const {
+  const auto& v = disc_.faces()[q].vertices;
+  return region_.meets_triangle(image[v[0]], image[v[1]], image[v[2]]);
+}
+
+std::size_t Growth::peel(const ImagePoints& image, const IdVector<PatchVertexId, char>& inside) {
+  const std::size_t count = disc_.faces().size();
+  // A face stays when it or a face round one of its corners has a vertex inside.
+  IdVector<PatchVertexId, char> near(disc_.vertex_count(), false);
+  for (PatchFaceId q : ids<PatchFaceId>(count)) {
+    if (!disc_.alive(q)) continue;
+    const auto& v = disc_.faces()[q].vertices;
+    if (inside[v[0]] || inside[v[1]] || inside[v[2]] || face_meets_region(q, image))
+      for (PatchVertexId w : v) near[w] = true;
+  }
+  const auto unwanted = [&](PatchFaceId q) {
+    const auto& v = disc_.faces()[q].vertices;
+    return !near[v[0]] && !near[v[1]] && !near[v[2]] && peeled_[disc_.faces()[q].mesh_face] < cover_limit_;
+  };
+  std::vector<PatchFaceId> work;
+  for (PatchFaceId q : ids<PatchFaceId>(count))
+    if (disc_.alive(q) && unwanted(q)) work.push_back(q);
+  std::size_t removed = 0;
+  for (std::size_t i = 0; i < work.size(); ++i) {
+    const PatchFaceId q = work[i];
+    if (!disc_.alive(q) || !unwanted(q) || !disc_.removable(q)) continue;
+    const PatchFace face = disc_.faces()[q];
+    disc_.remove(q);
+    ++peeled_[face.mesh_face];
+    ++removed;
+    for (PatchFaceId across : face.neighbours)
+      if (across.valid() && unwanted(across)) work.push_back(across);
+  }
+  return removed;
+}
+
+std::size_t Growth::trim(const ImagePoints& image) {
+  std::vector<PatchFaceId> work;
+  for (PatchFaceId q : ids<PatchFaceId>(disc_.faces().size()))
+    if (disc_.alive(q)) work.push_back(q);
+  std::size_t removed = 0;
+  for (std::size_t i = 0; i < work.size(); ++i) {
+    const PatchFaceId q = work[i];
+    if (!disc_.alive(q) || !disc_.removable(q) || face_meets_region(q, image)) continue;
+    const PatchFace face = disc_.faces()[q];
+    disc_.remove(q);
+    ++removed;
+    for (PatchFaceId across : face.neighbours)
+      if (across.valid()) work.push_back(across);
+  }
+  return removed;
+}
+
+std::vector<Growth::Side> Growth::front(const ImagePoints& image, const IdVector<PatchVertexId, char>& inside,
+                                        std::span<const PatchFaceId> candidates) const {
+  std::vector<Side> front;
+  for (PatchFaceId q : candidates) {
+    if (!disc_.alive(q)) continue;
+    const PatchFace& face = disc_.faces()[q];
+    for (int k = 0; k < 3; ++k) {
+      if (face.neighbours[k].valid()) continue;
+      const PatchVertexId a = face.vertices[(k + 1) % 3], b = face.vertices[(k + 2) % 3];
+      if (inside[a] || inside[b] || region_.meets_segment(image[a], image[b]))
+        front.push_back({q, k, 0.5 * (image[a] + image[b])});
+    }
+  }
+  std::sort(front.begin(), front.end(), [](const Side& a, const Side& b) {
+    return std::pair(a.middle.real(), a.middle.imag()) < std::pair(b.middle.real(), b.middle.imag());
+  });
+  return front;
+}
+
+std::size_t Growth::grow(ImagePoints& image, IdVector<PatchVertexId, char>& inside, const Limits& limits) {
+  const std::size_t most = static_cast<std::size_t>(limits.growth * static_cast<double>(disc_.live_faces()));
+  std::vector<PatchFaceId> candidates;
+  candidates.reserve(disc_.faces().size());
+  for (PatchFaceId q : ids<PatchFaceId>(disc_.faces().size())) candidates.push_back(q);
+  std::size_t added = 0;
+  for (int ring = 0; ring < limits.rings && disc_.live_faces() < most && !candidates.empty(); ++ring) {
+    std::vector<PatchFaceId> fresh;
+    for (const Side& side : front(image, inside, candidates)) {
+      const PatchFace face = disc_.faces()[side.face];
+      if (face.neighbours[side.edge].valid()) continue;  // zipped meanwhile
+      ImmersedDisc::GlueResult result = disc_.glue(side.face, side.edge, cover_limit_);
+      if (result.outcome == ImmersedDisc::Glue::boundary && bridge_hole(side.face, side.edge, image))
+        result = disc_.glue(side.face, side.edge, cover_limit_);
+      if (result.outcome != ImmersedDisc::Glue::glued) continue;
+      ++added;
+      fresh.push_back(result.face);
+      image.resize(disc_.vertex_count());
+      inside.resize(disc_.vertex_count(), false);
+      if (result.merged) continue;
+      const PatchVertexId a = face.vertices[(side.edge + 1) % 3], b = face.vertices[(side.edge + 2) % 3];
+      const Vec2 apex =
+          apex_in_edge_frame(disc_.position(a), disc_.position(b), disc_.position(result.vertex));
+      image[result.vertex] = image[a] + (image[b] - image[a]) * apex;
+      inside[result.vertex] = (inside[a] || inside[b]) && region_.contains(image[result.vertex]);
+    }
+    candidates = std::move(fresh);
+  }
+  return added;
+}
+
+bool Growth::bridge_hole(PatchFaceId q, int k, const ImagePoints& image) {
+  const PatchFace& face = disc_.faces()[q];
+  const PatchVertexId a = face.vertices[(k + 1) % 3], b = face.vertices[(k + 2) % 3];
+  const auto hole = disc_.surface().hole_at(face.mesh_face, k, most_hole_sides);
+  if (!hole) return false;
+  const double scale = std::abs(image[b] - image[a]) / (disc_.position(b) - disc_.position(a)).norm();
+  if (!(hole->perimeter * scale < largest_hole * region_.diameter())) return false;
+  disc_.surface().bridge(*hole);
+  return true;
+}
+
+void Growth::compact(ImagePoints& image) {
+  const ImmersedDisc::Renumbering map = disc_.compact();
+  ImagePoints compacted(disc_.vertex_count());
+  for (PatchVertexId v : ids<PatchVertexId>(map.vertices.size()))
+    if (map.vertices[v].valid()) compacted[map.vertices[v]] = image[v];
+  image = std::move(compacted);
+  for (PatchFaceId& q : feature_faces_) q = map.faces[q];
+}
+
+Coverage Growth::coverage(const ImagePoints& image) const {
+  Coverage worst = Coverage::covered;
+  for (PatchFaceId q : ids<PatchFaceId>(disc_.faces().size())) {
+    if (!disc_.alive(q)) continue;
+    const PatchFace& face = disc_.faces()[q];
+    for (int k = 0; k < 3; ++k) {
+      if (face.neighbours[k].valid()) continue;
+      const PatchVertexId a = face.vertices[(k + 1) % 3], b = face.vertices[(k + 2) % 3];
+      if (!region_.meets_segment(image[a], image[b])) continue;
+      const FaceId beyond = disc_.surface().neighbour(face.mesh_face, k);
+      const Coverage here = !beyond.valid()                       ? Coverage::clipped_by_boundary
+                            : disc_.cover(beyond) >= cover_limit_ ? Coverage::clipped_by_cover
+                            : disc_.boundary_length() <= 3        ? Coverage::clipped_closed
+                                                                  : Coverage::not_converged;
+      worst = std::max(worst, here);
+    }
+  }
+  return worst;
+}
+
+}  // namespace applique

@@ -1,0 +1,76 @@
+#pragma once
+
+#include <span>
+#include <unordered_map>
+#include <vector>
+
+#include "applique/patch/immersed_disc.h"
+#include "applique/region/region.h"
+
+namespace applique {
+
+/// Image points of a disc's vertices, dead ones included.
+using ImagePoints = IdVector<PatchVertexId, Vec2>;
+
+/// How the growth ended (§2.7 of the design).
+enum class Coverage {
+  covered,              ///< The whole region lies on the surface.
+  clipped_by_boundary,  ///< The surface ends inside the region.
+  clipped_by_cover,     ///< The region meets itself on the surface.
+  clipped_closed,       ///< The patch has gone all the way round a closed surface.
+  not_converged,        ///< Stopped by the limit of solves.
+};
+
+/// Updates a patch between two embeddings (§5.2 of the paper, §2.5 to §2.8 of the design): works with the
+/// image points of its vertices alone. Every loop ends: the cover limit bounds what is glued, and a surface
+/// face that has been peeled once is never peeled again.
+class Growth {
+ public:
+  Growth(ImmersedDisc& disc, std::vector<PatchFaceId> feature_faces, const Region& region,
+         std::uint32_t cover_limit);
+
+  /// Vertices inside the region that are connected with a feature through such vertices: the set S of §5.2.1.
+  [[nodiscard]] IdVector<PatchVertexId, char> inside(const ImagePoints& image) const;
+
+  /// Removes faces that lie outside the region together with their one-rings. Returns how many.
+  std::size_t peel(const ImagePoints& image, const IdVector<PatchVertexId, char>& inside);
+  /// Removes every face that does not meet the region, also those peeled before. Returns how many.
+  std::size_t trim(const ImagePoints& image);
+
+  struct Limits {
+    int rings = 32;
+    double growth = 8;  ///< No further ring once the patch is this many times its size.
+  };
+  /// Glues rings of faces at the boundary where it lies in the region; the image points of new vertices are
+  /// predicted by continuing the neighbour's similarity and appended to `image`. Bridges small holes.
+  /// Returns how many faces were added.
+  std::size_t grow(ImagePoints& image, IdVector<PatchVertexId, char>& inside, const Limits& limits);
+
+  /// Drops dead ids; `image` follows.
+  void compact(ImagePoints& image);
+
+  /// Why the boundary cannot move on where it lies in the region, or that it nowhere does.
+  [[nodiscard]] Coverage coverage(const ImagePoints& image) const;
+
+  [[nodiscard]] const std::vector<PatchFaceId>& feature_faces() const { return feature_faces_; }
+
+ private:
+  struct Side {
+    PatchFaceId face;
+    int edge;
+    Vec2 middle;  ///< In the image: the order of gluing, so that it does not depend on how the model is
+                  ///< numbered.
+  };
+  [[nodiscard]] std::vector<Side> front(const ImagePoints& image, const IdVector<PatchVertexId, char>& inside,
+                                        std::span<const PatchFaceId> candidates) const;
+  [[nodiscard]] bool face_meets_region(PatchFaceId q, const ImagePoints& image) const;
+  bool bridge_hole(PatchFaceId q, int k, const ImagePoints& image);
+
+  ImmersedDisc& disc_;
+  std::vector<PatchFaceId> feature_faces_;
+  const Region& region_;
+  std::uint32_t cover_limit_;
+  std::unordered_map<FaceId, std::uint32_t> peeled_;
+};
+
+}  // namespace applique

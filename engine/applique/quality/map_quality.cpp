@@ -1,0 +1,102 @@
+#include "applique/quality/map_quality.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "applique/base/predicates.h"
+
+namespace applique {
+namespace {
+
+/// Singular values of the affine map that takes a plane triangle to a space triangle.
+struct Singular {
+  double larger, smaller;
+};
+
+Singular singular_values(const std::array<Vec3, 3>& q, const std::array<Vec2, 3>& p) {
+  const Vec2 e1 = p[1] - p[0], e2 = p[2] - p[0];
+  const double double_area = cross(e1, e2);
+  const Vec3 d1 = q[1] - q[0], d2 = q[2] - q[0];
+  const Vec3 s = (d1 * e2.imag() - d2 * e1.imag()) / double_area;
+  const Vec3 t = (d2 * e1.real() - d1 * e2.real()) / double_area;
+  const double a = s.squaredNorm(), b = s.dot(t), c = t.squaredNorm();
+  const double root = std::hypot(a - c, 2 * b);
+  return {std::sqrt(0.5 * (a + c + root)), std::sqrt(std::max(0.0, 0.5 * (a + c - root)))};
+}
+
+/// Sutherland and Hodgman: the part of the polygon to the left of a -> b.
+std::vector<Vec2> clip(const std::vector<Vec2>& polygon, Vec2 a, Vec2 b) {
+  std::vector<Vec2> kept;
+  for (std::size_t i = 0; i < polygon.size(); ++i) {
+    const Vec2 from = polygon[i], to = polygon[(i + 1) % polygon.size()];
+    const double before = cross(b - a, from - a), after = cross(b - a, to - a);
+    if (before >= 0) kept.push_back(from);
+    if ((before < 0) != (after < 0)) kept.push_back(from + before / (before - after) * (to - from));
+  }
+  return kept;
+}
+
+}  // namespace
+
+double area_in_region(const Region& region, const std::array<Vec2, 3>& triangle) {
+  const double whole = 0.5 * cross(triangle[1] - triangle[0], triangle[2] - triangle[0]);
+  // The region has no holes: a triangle whose sides lie in it lies in it.
+  if (region.contains_segment(triangle[0], triangle[1]) &&
+      region.contains_segment(triangle[1], triangle[2]) && region.contains_segment(triangle[2], triangle[0]))
+    return whole;
+  std::vector<Vec2> polygon = region.polygon();
+  for (int k = 0; k < 3; ++k) polygon = clip(polygon, triangle[k], triangle[(k + 1) % 3]);
+  double area = 0;
+  for (std::size_t i = 0; i < polygon.size(); ++i)
+    area += 0.5 * cross(polygon[i] - triangle[0], polygon[(i + 1) % polygon.size()] - triangle[0]);
+  return std::clamp(area, 0.0, whole);
+}
+
+MapQuality measure_quality(const SurfaceMesh& surface, const Patch& patch,
+                           const IdVector<PatchVertexId, Vec2>& plane,
+                           const IdVector<PatchVertexId, Vec2>& image,
+                           const IdVector<PatchFaceId, char>& textured, const Region& region) {
+  MapQuality quality;
+  struct Measured {
+    Singular singular;
+    double area;  ///< On the surface, under the region.
+  };
+  std::vector<Measured> measured;
+  double image_area = 0;
+  for (PatchFaceId q : ids<PatchFaceId>(patch.faces.size())) {
+    if (!textured[q]) continue;
+    const auto& v = patch.faces[q].vertices;
+    if (orientation(plane[v[0]], plane[v[1]], plane[v[2]]) <= 0) ++quality.flipped_plane;
+    const std::array<Vec2, 3> p = {image[v[0]], image[v[1]], image[v[2]]};
+    if (orientation(p[0], p[1], p[2]) <= 0) {
+      ++quality.flipped_image;
+      continue;
+    }
+    const std::array<Vec3, 3> corners = surface.corners(patch.faces[q].mesh_face);
+    const double inside = area_in_region(region, p);
+    const double share = inside / (0.5 * cross(p[1] - p[0], p[2] - p[0]));
+    image_area += inside;
+    const double area = share * 0.5 * (corners[1] - corners[0]).cross(corners[2] - corners[0]).norm();
+    if (area > 0) measured.push_back({singular_values(corners, p), area});
+    quality.area += area;
+  }
+  quality.coverage = image_area / region.area();
+  if (measured.empty()) return quality;
+
+  const double normal = std::sqrt(image_area / quality.area);  // makes the total areas equal
+  double l2 = 0, angle = 0, area_ratio = 0;
+  for (const auto& [s, area] : measured) {
+    l2 += 0.5 * (s.larger * s.larger + s.smaller * s.smaller) * area;
+    quality.linf_stretch = std::max(quality.linf_stretch, s.larger * normal);
+    const double ratio = s.larger * s.smaller * normal * normal;
+    angle += s.smaller > 0 ? s.larger / s.smaller * area : 0;
+    area_ratio += ratio > 0 ? std::max(ratio, 1 / ratio) * area : 0;
+  }
+  quality.raw_l2_stretch = std::sqrt(l2 / quality.area);
+  quality.l2_stretch = quality.raw_l2_stretch * normal;
+  quality.angle_distortion = angle / quality.area;
+  quality.area_distortion = area_ratio / quality.area;
+  return quality;
+}
+
+}  // namespace applique

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "applique/base/types.h"
+#include "applique/patch/patch.h"
+#include "applique/region/region.h"
+#include "applique/surface/surface_mesh.h"
+
+namespace applique {
+
+/// Quality of a map from the surface to the image, over the textured faces, each weighted by the share of it
+/// that lies in the region (§9 of the design). Stretch is that of Sander et al. 2001, normalised so that an
+/// isometry up to scale scores 1. Turned-over faces count as flips and are left out of the means.
+struct MapQuality {
+  double l2_stretch = 1;
+  double linf_stretch = 1;
+  double raw_l2_stretch = 0;             ///< Not normalised: scene units per plane unit.
+  double angle_distortion = 1;           ///< Area mean of sigma1 / sigma2.
+  double area_distortion = 1;            ///< Area mean of max(s1 s2, 1 / (s1 s2)), total areas made equal.
+  std::uint32_t flipped_plane = 0;       ///< Triangles turned over in the embedding.
+  std::uint32_t flipped_image = 0;       ///< Triangles turned over in the image.
+  double coverage = 0;                   ///< Share of the region's area that lands on the surface.
+  double area = 0;                       ///< Surface area under the region, scene units squared.
+  std::vector<double> feature_residual;  ///< Pixels, per feature, in the exact map.
+};
+
+/// All but the residuals. `plane` and `image` per patch vertex; only faces marked in `textured` are looked
+/// at.
+MapQuality measure_quality(const SurfaceMesh& surface, const Patch& patch,
+                           const IdVector<PatchVertexId, Vec2>& plane,
+                           const IdVector<PatchVertexId, Vec2>& image,
+                           const IdVector<PatchFaceId, char>& textured, const Region& region);
+
+/// The area that a triangle, counter-clockwise, has in common with the region.
+double area_in_region(const Region& region, const std::array<Vec2, 3>& triangle);
+
+}  // namespace applique

@@ -1,0 +1,107 @@
+#include "applique/warp/build_warp.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "applique/warp/trajectory.h"
+
+namespace applique {
+namespace {
+
+constexpr std::uint32_t least_steps = 4;
+constexpr double still = 1e-13;     // plane units: a feature that moves less does not move
+constexpr double collision = 0.05;  // share of its length below which a pair is left out
+constexpr double extreme_scale = 4;
+constexpr double extreme_turn = 2 * std::numbers::pi / 3;
+
+/// Visible pairs, and for a feature that sees none its artificial ones.
+std::vector<FeaturePair> warp_pairs(const FeatureGraph& graph, std::size_t features) {
+  std::vector<char> paired(features, false);
+  for (const auto& [i, j] : graph.visible) paired[i] = paired[j] = true;
+  std::vector<FeaturePair> pairs = graph.visible;
+  for (const FeaturePair& pair : graph.artificial)
+    if (!paired[pair[0]] || !paired[pair[1]]) pairs.push_back(pair);
+  return pairs;
+}
+
+/// Leaves out pairs that nearly collide on the way, as long as both features keep another.
+void drop_colliding(std::vector<FeaturePair>& pairs, const std::vector<std::vector<Vec2>>& keyframes) {
+  std::vector<int> count(keyframes[0].size(), 0);
+  for (const auto& [i, j] : pairs) {
+    ++count[i];
+    ++count[j];
+  }
+  std::erase_if(pairs, [&](const FeaturePair& pair) {
+    if (count[pair[0]] < 2 || count[pair[1]] < 2 || closest_approach(keyframes, pair) >= collision)
+      return false;
+    --count[pair[0]];
+    --count[pair[1]];
+    return true;
+  });
+}
+
+Warp tabulate(const std::vector<std::vector<Vec2>>& keyframes, const std::vector<FeaturePair>& pairs,
+              std::uint32_t steps) {
+  Warp warp;
+  warp.steps = steps;
+  warp.features = static_cast<std::uint32_t>(keyframes[0].size());
+  warp.pairs = pairs;
+  const auto pieces = static_cast<std::uint32_t>(keyframes.size() - 1);
+  const std::uint32_t steps_per_piece = steps / pieces;
+  for (std::uint32_t step = 0; step < steps; ++step) {
+    const std::vector<Vec2>& start = keyframes[step / steps_per_piece];
+    const std::vector<Vec2>& end = keyframes[step / steps_per_piece + 1];
+    for (std::uint32_t half = 0; half < 3; ++half) {
+      // Share of the way from one keyframe to the next; its ends are taken literally, so that features are
+      // exact.
+      const double t = (2.0 * (step % steps_per_piece) + half) / (2.0 * steps_per_piece);
+      const std::size_t first = warp.position.size();
+      for (std::size_t k = 0; k < start.size(); ++k)
+        warp.position.push_back(t == 1 ? end[k] : start[k] + t * (end[k] - start[k]));
+      for (const auto& [i, j] : pairs) {
+        const Vec2 move_i = static_cast<double>(pieces) * (end[i] - start[i]);
+        const Vec2 move_j = static_cast<double>(pieces) * (end[j] - start[j]);
+        const Vec2 rate = (move_j - move_i) / (warp.position[first + j] - warp.position[first + i]);
+        warp.lambda.push_back(rate);
+        warp.offset.push_back(move_i - rate * warp.position[first + i]);
+      }
+    }
+  }
+  return warp;
+}
+
+}  // namespace
+
+BuiltWarp build_warp(std::span<const Vec2> from, std::span<const Vec2> to, const FeatureGraph& graph,
+                     std::span<const Vec2> probes, const WarpOptions& options) {
+  BuiltWarp built;
+  bool moves = false;
+  for (std::size_t k = 0; k < from.size(); ++k) moves = moves || std::abs(to[k] - from[k]) > still;
+  if (from.size() < 3 || !moves) return built;
+
+  std::vector<FeaturePair> pairs = warp_pairs(graph, from.size());
+  for (const FeaturePair& pair : pairs) {
+    const Vec2 ratio = (to[pair[1]] - to[pair[0]]) / (from[pair[1]] - from[pair[0]]);
+    const double scale = std::abs(ratio), turn = std::arg(ratio);
+    if (scale > extreme_scale || scale < 1 / extreme_scale || std::abs(turn) > extreme_turn)
+      built.stressed.push_back({pair, scale, turn});
+  }
+  const auto keyframes = feature_trajectories(from, to, graph, pairs);
+  drop_colliding(pairs, keyframes);
+
+  const auto pieces = static_cast<std::uint32_t>(keyframes.size() - 1);
+  std::uint32_t steps = std::max(least_steps, pieces);
+  built.warp = tabulate(keyframes, pairs, steps);
+  while (2 * steps <= options.max_steps) {
+    Warp finer = tabulate(keyframes, pairs, 2 * steps);
+    double difference = 0;
+    for (Vec2 probe : probes) difference = std::max(difference, std::abs(finer(probe) - built.warp(probe)));
+    if (difference <= options.tolerance) break;
+    steps *= 2;
+    built.warp = std::move(finer);
+  }
+  return built;
+}
+
+}  // namespace applique
