@@ -6,7 +6,9 @@
 #include <vector>
 
 /// The third-party test data, "" when there is none.
-inline std::filesystem::path test_data() { return APPLIQUE_TEST_DATA; }
+inline std::filesystem::path test_data() {
+  return APPLIQUE_TEST_DATA;
+}
 
 /// All .glb and .gltf files below a folder of the test data, sorted.
 inline std::vector<std::filesystem::path> models_below(const std::filesystem::path& folder) {

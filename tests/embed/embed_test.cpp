@@ -1,0 +1,141 @@
+#include "applique/embed/embed.h"
+
+#include <cmath>
+#include <numbers>
+
+#include <gtest/gtest.h>
+
+#include "applique/embed/align.h"
+#include "applique/embed/arap.h"
+#include "applique/embed/boundary_first.h"
+#include "applique/embed/tutte.h"
+
+#include "support/shapes.h"
+
+namespace applique {
+namespace {
+
+/// A disc over all faces within a geodesic-like reach of face `first` (all that glue reaches on an open
+/// mesh).
+struct Disc {
+  SurfaceMesh mesh;
+  BridgedSurface surface;
+  ImmersedDisc disc;
+
+  explicit Disc(
+      const shapes::Soup& soup, FaceId first = FaceId(0),
+      const std::function<bool(const Vec3&)>& keep = [](const Vec3&) { return true; })
+      : mesh(soup.weld()), surface(mesh), disc(surface, first) {
+    for (std::size_t i = 0; i < disc.faces().size(); ++i)
+      for (int k = 0; k < 3; ++k) {
+        const PatchFace& face = disc.faces()[PatchFaceId(i)];
+        const FaceId beyond = surface.neighbour(face.mesh_face, k);
+        if (face.neighbours[k].valid() || !beyond.valid()) continue;
+        const auto c = mesh.corners(beyond);
+        if (keep((c[0] + c[1] + c[2]) / 3)) disc.glue(PatchFaceId(i), k, 1);
+      }
+    disc.compact();
+  }
+};
+
+/// The largest relative error of an edge's length in the plane.
+double length_error(const DiscGeometry& disc, const std::vector<Vec2>& plane) {
+  double worst = 0;
+  for (std::size_t t = 0; t < disc.faces.size(); ++t)
+    for (int k = 0; k < 3; ++k) {
+      const double length = std::abs(plane[disc.faces[t][(k + 1) % 3]] - plane[disc.faces[t][(k + 2) % 3]]);
+      worst = std::max(worst, std::abs(length / disc.lengths[t][k] - 1));
+    }
+  return worst;
+}
+
+TEST(BoundaryFirst, IsAnIsometryOnThePlane) {
+  const Disc d(shapes::plane(12, 9, 2, 1, 0.3));
+  const DiscGeometry geometry = measure_disc(d.disc);
+  EXPECT_LT(length_error(geometry, flatten_boundary_first(geometry)), 1e-11);
+}
+
+TEST(BoundaryFirst, UnrollsACylinder) {
+  const Disc d(shapes::cylinder(40, 12, 1, 2), FaceId(0),
+               [](const Vec3& p) { return std::abs(std::atan2(p.y(), p.x())) < 2.5; });
+  const DiscGeometry geometry = measure_disc(d.disc);
+  EXPECT_EQ(count_flips(geometry, flatten_boundary_first(geometry)), 0u);
+  EXPECT_LT(length_error(geometry, flatten_boundary_first(geometry)), 1e-10);
+}
+
+/// A spherical cap has a known flattening with unit boundary scale: the stereographic projection.
+TEST(BoundaryFirst, ConvergesToTheStereographicProjectionOfACap) {
+  double previous = 1;
+  for (int levels = 3; levels <= 5; ++levels) {
+    const shapes::Soup soup = shapes::sphere(levels, 1);
+    const SurfaceMesh mesh = soup.weld();
+    const Vec3 pole = mesh.positions[VertexId(0)];
+    const Disc d(soup, mesh.vertex_face[VertexId(0)],
+                 [&](const Vec3& p) { return p.normalized().dot(pole) > 0.5; });
+    const DiscGeometry geometry = measure_disc(d.disc);
+    const std::vector<Vec2> plane = flatten_boundary_first(geometry);
+    const Vec3 x = pole.unitOrthogonal(), y = pole.cross(x);
+    std::vector<Vec2> exact(plane.size());
+    for (PatchVertexId v : ids<PatchVertexId>(plane.size())) {
+      const Vec3 p = d.disc.position(v);
+      exact[v.value] = Vec2(p.dot(x), p.dot(y)) / (1 + p.dot(pole));
+    }
+    const Similarity fit = fit_similarity(plane, exact);
+    double error = 0;
+    for (std::size_t v = 0; v < plane.size(); ++v) error += std::norm(fit(plane[v]) - exact[v]);
+    error = std::sqrt(error / static_cast<double>(plane.size()));
+    EXPECT_LT(error, 0.6 * previous) << "levels " << levels;
+    previous = error;
+  }
+  EXPECT_LT(previous, 5e-3);
+}
+
+TEST(Tutte, TurnsNothingOver) {
+  for (const double height : {0.0, 1.0, 5.0}) {
+    const Disc d(shapes::bump(24, height, 0.3));
+    const DiscGeometry geometry = measure_disc(d.disc);
+    EXPECT_EQ(count_flips(geometry, embed_on_circle(geometry)), 0u) << height;
+  }
+}
+
+TEST(Embed, IsometricHasLessStretchThanConformalAndNoFlips) {
+  const Disc d(shapes::bump(32, 1.2, 0.3));
+  const DiscGeometry geometry = measure_disc(d.disc);
+  const Embedding conformal = embed_disc(geometry, {Energy::conformal});
+  const Embedding isometric = embed_disc(geometry, {Energy::isometric});
+  EXPECT_EQ(conformal.flips, 0u);
+  EXPECT_EQ(isometric.flips, 0u);
+  EXPECT_LT(length_error(geometry, isometric.plane), 0.6 * length_error(geometry, conformal.plane));
+}
+
+/// A cap far beyond a hemisphere, where ARAP folds: the result must still turn nothing over.
+TEST(Embed, FallsBackWhereArapFolds) {
+  const shapes::Soup soup = shapes::sphere(4, 1);
+  const SurfaceMesh mesh = soup.weld();
+  const Vec3 pole = mesh.positions[VertexId(0)];
+  const Disc d(soup, mesh.vertex_face[VertexId(0)],
+               [&](const Vec3& p) { return std::acos(p.normalized().dot(pole)) < 2.8; });
+  const DiscGeometry geometry = measure_disc(d.disc);
+  const std::vector<Vec2> folded = relax_arap(geometry, flatten_boundary_first(geometry));
+  ASSERT_GT(count_flips(geometry, folded), 0u) << "the case no longer folds: choose a harder one";
+  const Embedding embedding = embed_disc(geometry);
+  EXPECT_EQ(embedding.flips, 0u);
+  EXPECT_NE(embedding.rung, EmbeddingRung::isometric);
+  EXPECT_EQ(count_flips(geometry, embedding.plane), 0u);
+}
+
+TEST(Align, RecoversARandomSimilarity) {
+  const std::vector<Vec2> from = {{0, 0}, {1, 0.2}, {-0.3, 0.8}, {0.5, -0.9}};
+  const Similarity truth{std::polar(1.7, 2.1), Vec2(-0.4, 3)};
+  std::vector<Vec2> to;
+  for (Vec2 z : from) to.push_back(truth(z));
+  const Similarity fit = fit_similarity(from, to);
+  EXPECT_LT(std::abs(fit.scale - truth.scale), 1e-14);
+  EXPECT_LT(std::abs(fit.shift - truth.shift), 1e-14);
+  EXPECT_FALSE(is_mirrored(from, to));
+  for (Vec2& z : to) z = std::conj(z);
+  EXPECT_TRUE(is_mirrored(from, to));
+}
+
+}  // namespace
+}  // namespace applique

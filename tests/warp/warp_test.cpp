@@ -1,0 +1,130 @@
+#include <numbers>
+#include <random>
+
+#include <gtest/gtest.h>
+
+#include "applique/warp/build_warp.h"
+#include "applique/warp/trajectory.h"
+
+namespace applique {
+namespace {
+
+/// Every pair sees each other; the planar graph is a chain.
+FeatureGraph open_graph(std::uint32_t n) {
+  FeatureGraph graph;
+  for (std::uint32_t i = 0; i < n; ++i)
+    for (std::uint32_t j = i + 1; j < n; ++j) graph.visible.push_back({i, j});
+  for (std::uint32_t i = 0; i + 1 < n; ++i) graph.planar.push_back({i, i + 1});
+  graph.tree = graph.planar;
+  return graph;
+}
+
+std::vector<Vec2> random_points(std::mt19937& random, int n, double size) {
+  std::uniform_real_distribution<double> coordinate(-size, size);
+  std::vector<Vec2> points;
+  while (static_cast<int>(points.size()) < n) {
+    const Vec2 z(coordinate(random), coordinate(random));
+    bool apart = true;
+    for (Vec2 other : points) apart = apart && std::abs(other - z) > 0.2 * size;
+    if (apart) points.push_back(z);
+  }
+  return points;
+}
+
+TEST(Warp, IsExactAtTheFeatures) {
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> shift(-0.08, 0.08);
+  for (int run = 0; run < 50; ++run) {
+    const int n = 3 + run % 8;
+    const std::vector<Vec2> from = random_points(random, n, 0.9);
+    std::vector<Vec2> to = from;
+    for (Vec2& z : to) z += Vec2(shift(random), shift(random));
+    const BuiltWarp built = build_warp(from, to, open_graph(static_cast<std::uint32_t>(n)), {});
+    for (int k = 0; k < n; ++k) EXPECT_LT(std::abs(built.warp(from[k]) - to[k]), 1e-13);
+  }
+}
+
+TEST(Warp, ReproducesAnySimilarityEverywhere) {
+  std::mt19937 random(6);
+  for (int run = 0; run < 20; ++run) {
+    const std::vector<Vec2> from = random_points(random, 6, 0.8);
+    const Vec2 scale = std::polar(0.6 + 0.05 * run, 0.1 * run - 1), shift(0.3, -0.2);
+    std::vector<Vec2> to;
+    for (Vec2 z : from) to.push_back(scale * z + shift);
+    const BuiltWarp built = build_warp(from, to, open_graph(6), {});
+    for (Vec2 z : random_points(random, 10, 1))
+      EXPECT_LT(std::abs(built.warp(z) - (scale * z + shift)), 1e-12);
+  }
+}
+
+/// A common translation must translate every point exactly: weights that are normalised separately fail here.
+TEST(Warp, TranslatesEveryPointUnderACommonTranslation) {
+  std::mt19937 random(8);
+  const std::vector<Vec2> from = random_points(random, 7, 0.9);
+  std::vector<Vec2> to = from;
+  for (Vec2& z : to) z += Vec2(0.25, -0.5);
+  const BuiltWarp built = build_warp(from, to, open_graph(7), {});
+  for (Vec2 z : random_points(random, 12, 1))
+    EXPECT_LT(std::abs(built.warp(z) - z - Vec2(0.25, -0.5)), 1e-13);
+}
+
+TEST(Warp, SwappingTheEndsInvertsIt) {
+  std::mt19937 random(9);
+  std::uniform_real_distribution<double> shift(-0.1, 0.1);
+  const std::vector<Vec2> from = random_points(random, 6, 0.9);
+  std::vector<Vec2> to = from;
+  for (Vec2& z : to) z += Vec2(shift(random), shift(random));
+  const std::vector<Vec2> probes = random_points(random, 15, 1);
+  const WarpOptions fine{1e-12, 256};
+  const BuiltWarp there = build_warp(from, to, open_graph(6), probes, fine);
+  const BuiltWarp back = build_warp(to, from, open_graph(6), probes, fine);
+  for (Vec2 z : probes) EXPECT_LT(std::abs(back.warp(there.warp(z)) - z), 1e-8);
+}
+
+TEST(Warp, StepsAreRefinedUntilTheProbesRest) {
+  std::mt19937 random(10);
+  const std::vector<Vec2> from = random_points(random, 6, 0.9), to = random_points(random, 6, 0.9);
+  const std::vector<Vec2> probes = random_points(random, 15, 1);
+  const BuiltWarp coarse = build_warp(from, to, open_graph(6), probes, {2e-5, 1024});
+  const BuiltWarp fine = build_warp(from, to, open_graph(6), probes, {1e-9, 8192});
+  for (Vec2 z : probes) EXPECT_LT(std::abs(coarse.warp(z) - fine.warp(z)), 4e-5);
+}
+
+TEST(Warp, OneAndTwoFeaturesNeedNone) {
+  EXPECT_EQ(build_warp(std::vector<Vec2>{{0, 0}}, std::vector<Vec2>{{1, 1}}, open_graph(1), {}).warp.steps,
+            0u);
+  const std::vector<Vec2> ends = {{0, 0}, {1, 1}};
+  EXPECT_EQ(build_warp(ends, ends, open_graph(2), {}).warp.steps, 0u);
+}
+
+TEST(Warp, TakesCollinearFeatures) {
+  const std::vector<Vec2> from = {{-0.8, 0}, {-0.1, 0}, {0.3, 0}, {0.9, 0}};
+  const std::vector<Vec2> to = {{-0.7, 0.1}, {-0.2, -0.1}, {0.4, 0.05}, {0.8, 0}};
+  const BuiltWarp built = build_warp(from, to, open_graph(4), {});
+  for (std::size_t k = 0; k < from.size(); ++k) EXPECT_LT(std::abs(built.warp(from[k]) - to[k]), 1e-14);
+  EXPECT_LT(std::abs(built.warp({0.1, 0.9}) - Vec2(0.1, 0.9)), 0.5);
+}
+
+/// Two features that swap places run straight into one another; turning keyframes keep them apart.
+TEST(Trajectory, TurnsWhereStraightLinesWouldCollide) {
+  std::vector<Vec2> from = {{-1, -1}, {1, -1}, {1, 1}, {-1, 1}, {-0.2, 0}, {0.2, 0}};
+  std::vector<Vec2> to = from;
+  std::swap(to[4], to[5]);
+  const FeatureGraph graph = [] {
+    FeatureGraph g = open_graph(6);
+    g.planar = {{0, 1}, {1, 2}, {2, 3}, {0, 3}, {4, 5}};
+    g.artificial = {{0, 4}};
+    return g;
+  }();
+  const auto keyframes = feature_trajectories(from, to, graph, std::vector<FeaturePair>{{4, 5}});
+  EXPECT_GE(keyframes.size(), 9u);
+  EXPECT_GT(closest_approach(keyframes, {4, 5}), 0.35);
+  EXPECT_EQ(keyframes.front()[4], from[4]);
+  EXPECT_EQ(keyframes.back()[5], to[5]);
+  const BuiltWarp built = build_warp(from, to, graph, {});
+  for (std::size_t k = 0; k < from.size(); ++k) EXPECT_LT(std::abs(built.warp(from[k]) - to[k]), 1e-12);
+  EXPECT_FALSE(built.stressed.empty());
+}
+
+}  // namespace
+}  // namespace applique
