@@ -1,0 +1,167 @@
+#include "applique/region/geodesic.h"
+
+#include <algorithm>
+#include <limits>
+#include <map>
+#include <utility>
+
+#include "applique/base/error.h"
+#include "applique/base/predicates.h"
+
+namespace applique {
+namespace {
+
+/// An edge of the sleeve as the path walks through it.
+struct Portal {
+  Vec2 left, right;
+};
+
+/// Length of the shortest path from `a` to `b` through the portals.
+double pull_tight(Vec2 a, Vec2 b, std::vector<Portal> portals) {
+  portals.push_back({b, b});
+  double length = 0;
+  Vec2 apex = a, left = a, right = a;
+  std::size_t left_at = 0, right_at = 0;
+  for (std::size_t i = 0; i < portals.size(); ++i) {
+    const auto turn = [&](Vec2 corner, std::size_t at) {
+      length += std::abs(corner - apex);
+      apex = left = right = corner;
+      i = at;  // Go on after the portal where the corner was found.
+      left_at = right_at = at;
+    };
+    const Portal& portal = portals[i];
+    if (right == apex || orientation(apex, right, portal.right) >= 0) {
+      if (right == apex || left == apex || orientation(apex, left, portal.right) < 0) {
+        right = portal.right;
+        right_at = i;
+      } else {
+        turn(left, left_at);
+        continue;
+      }
+    }
+    if (left == apex || orientation(apex, left, portal.left) <= 0) {
+      if (left == apex || right == apex || orientation(apex, right, portal.left) > 0) {
+        left = portal.left;
+        left_at = i;
+      } else {
+        turn(right, right_at);
+      }
+    }
+  }
+  return length + std::abs(b - apex);
+}
+
+}  // namespace
+
+InnerGeodesics::InnerGeodesics(const std::vector<Vec2>& polygon) : polygon_(polygon) {
+  cut_ears();
+  link_triangles();
+}
+
+void InnerGeodesics::cut_ears() {
+  const auto n = static_cast<std::uint32_t>(polygon_.size());
+  std::vector<std::uint32_t> next(n), before(n);
+  for (std::uint32_t i = 0; i < n; ++i) {
+    next[i] = (i + 1) % n;
+    before[i] = (i + n - 1) % n;
+  }
+  const auto turn = [&](std::uint32_t i) {
+    return orientation(polygon_[before[i]], polygon_[i], polygon_[next[i]]);
+  };
+  std::vector<std::uint32_t> blocking;  // Vertices that are not convex may lie in an ear.
+  for (std::uint32_t i = 0; i < n; ++i) {
+    if (turn(i) <= 0) blocking.push_back(i);
+  }
+  const auto is_ear = [&](std::uint32_t i) {
+    if (turn(i) <= 0) return false;
+    const Vec2 a = polygon_[before[i]], b = polygon_[i], c = polygon_[next[i]];
+    return std::none_of(blocking.begin(), blocking.end(), [&](std::uint32_t k) {
+      const Vec2 z = polygon_[k];
+      return k != before[i] && k != next[i] && k != i && orientation(a, b, z) >= 0 &&
+             orientation(b, c, z) >= 0 && orientation(c, a, z) >= 0;
+    });
+  };
+  std::uint32_t at = 0, since_ear = 0;
+  for (std::uint32_t left = n; left > 3;) {
+    if (!is_ear(at)) {
+      APPLIQUE_ASSERT(++since_ear <= left);  // A simple polygon always has an ear.
+      at = next[at];
+      continue;
+    }
+    triangles_.push_back({{before[at], at, next[at]}, {-1, -1, -1}});
+    next[before[at]] = next[at];
+    before[next[at]] = before[at];
+    std::erase_if(blocking, [&](std::uint32_t k) {
+      return k == at || ((k == before[at] || k == next[at]) && turn(k) > 0);
+    });
+    since_ear = 0;
+    --left;
+    at = next[next[at]];  // Skipping one keeps the triangles from fanning about one vertex.
+  }
+  triangles_.push_back({{before[at], at, next[at]}, {-1, -1, -1}});
+}
+
+void InnerGeodesics::link_triangles() {
+  std::map<std::pair<std::uint32_t, std::uint32_t>, std::pair<std::int32_t, std::size_t>> open;
+  for (std::int32_t t = 0; t < static_cast<std::int32_t>(triangles_.size()); ++t) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::uint32_t a = triangles_[t].vertices[k], b = triangles_[t].vertices[(k + 1) % 3];
+      const auto other = open.find({b, a});
+      if (other == open.end()) {
+        open[{a, b}] = {t, k};
+      } else {
+        triangles_[t].neighbours[k] = other->second.first;
+        triangles_[other->second.first].neighbours[other->second.second] = t;
+      }
+    }
+  }
+}
+
+// The first triangle that holds z, or the one that it misses by least.
+std::int32_t InnerGeodesics::triangle_of(Vec2 z) const {
+  std::int32_t nearest = 0;
+  double least = std::numeric_limits<double>::infinity();
+  for (std::int32_t t = 0; t < static_cast<std::int32_t>(triangles_.size()); ++t) {
+    double outside = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Vec2 a = polygon_[triangles_[t].vertices[k]], b = polygon_[triangles_[t].vertices[(k + 1) % 3]];
+      if (orientation(a, b, z) < 0) outside = std::max(outside, -cross(b - a, z - a) / std::abs(b - a));
+    }
+    if (outside < least) {
+      least = outside;
+      nearest = t;
+      if (outside == 0) break;
+    }
+  }
+  return nearest;
+}
+
+std::vector<double> InnerGeodesics::lengths(Vec2 source, const std::vector<Vec2>& targets) const {
+  const std::int32_t start = triangle_of(source);
+  std::vector<std::int32_t> parent(triangles_.size(), -1);
+  std::vector<std::int32_t> order = {start};
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    for (const std::int32_t t : triangles_[order[i]].neighbours) {
+      if (t < 0 || t == parent[order[i]]) continue;
+      parent[t] = order[i];
+      order.push_back(t);
+    }
+  }
+  std::vector<double> result;
+  for (const Vec2 target : targets) {
+    std::vector<Portal> portals;
+    for (std::int32_t t = triangle_of(target); t != start; t = parent[t]) {
+      const auto& neighbours = triangles_[t].neighbours;
+      const auto k = static_cast<std::size_t>(std::find(neighbours.begin(), neighbours.end(), parent[t]) -
+                                              neighbours.begin());
+      // Walking into t: the edge as seen from inside t, counter-clockwise, has its start on the walker's
+      // left.
+      portals.push_back({polygon_[triangles_[t].vertices[k]], polygon_[triangles_[t].vertices[(k + 1) % 3]]});
+    }
+    std::reverse(portals.begin(), portals.end());
+    result.push_back(pull_tight(source, target, std::move(portals)));
+  }
+  return result;
+}
+
+}  // namespace applique
