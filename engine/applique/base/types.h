@@ -3,7 +3,7 @@
 #include <complex>
 #include <cstdint>
 
-#include <Eigen/Core>
+#include <Eigen/Geometry>
 
 namespace applique {
 
