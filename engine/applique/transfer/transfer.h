@@ -40,7 +40,9 @@ struct Transfer {
   BlendMode blend = BlendMode::normal;
   WrapMode wrap_u = WrapMode::repeat;
   WrapMode wrap_v = WrapMode::repeat;
-  std::uint32_t gutter = 16;  ///< Texels around the UV islands that are filled by extending the nearest face.
+  std::uint32_t gutter =
+      16;  ///< Texels around the UV islands that are filled by extending the nearest face, <= 255.
+  bool opaque = true;  ///< The material ignores the texture's alpha: colours blend as over opaque texels.
 };
 
 /// What a transfer did, and, when asked for, the image point of each covered texel.

@@ -1,0 +1,330 @@
+#include "applique/gpu/gpu_transfer.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstring>
+
+#include <fmt/format.h>
+
+#include "applique/transfer/raster.h"
+
+#include "transfer_cover.spv.h"
+#include "transfer_nearest.spv.h"
+#include "transfer_shade.spv.h"
+#include "transfer_shade_large.spv.h"
+
+namespace applique {
+namespace {
+
+constexpr VkBufferUsageFlags storage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
+
+struct Tables {
+  std::array<shader::uvec4, shader::max_levels> levels;
+  std::array<shader::vec4, shader::warp_table_capacity> warp;
+};
+static_assert(sizeof(Tables) <= 16384);
+
+struct OutcomeCounts {
+  std::uint32_t covered, gutter, shared, padding;
+};
+
+// Rounds to nearest, ties to even; values are 0 to 1.
+std::uint16_t to_half(float value) {
+  constexpr float smallest_normal = 6.103515625e-05F;
+  if (value < smallest_normal) return static_cast<std::uint16_t>(std::max(value, 0.0F) * 16777216.0F + 0.5F);
+  const auto bits = std::bit_cast<std::uint32_t>(value) - (112U << 23);
+  return static_cast<std::uint16_t>((bits + 0xfffU + (bits >> 13 & 1U)) >> 13);
+}
+
+// All levels from `first` on.
+std::vector<std::uint16_t> packed_levels(const DecalImage& image, std::size_t first) {
+  std::vector<std::uint16_t> halves;
+  halves.reserve(4 * (image.texels.size() - image.levels[first].offset));
+  for (std::size_t i = image.levels[first].offset; i < image.texels.size(); ++i) {
+    for (const float channel : image.texels[i]) halves.push_back(to_half(channel));
+  }
+  return halves;
+}
+
+// As the shader reads it: pairs, positions by stage, rates by stage.
+std::vector<shader::vec4> warp_table(const Warp& warp) {
+  std::vector<shader::vec4> table;
+  table.reserve(warp.pairs.size() + warp.position.size() + warp.lambda.size());
+  for (const auto& [i, j] : warp.pairs)
+    table.push_back({std::bit_cast<float>(i), std::bit_cast<float>(j), 0, 0});
+  for (const Vec2 p : warp.position)
+    table.push_back({static_cast<float>(p.real()), static_cast<float>(p.imag()), 0, 0});
+  for (std::size_t q = 0; q < warp.lambda.size(); ++q) {
+    table.push_back({static_cast<float>(warp.lambda[q].real()), static_cast<float>(warp.lambda[q].imag()),
+                     static_cast<float>(warp.offset[q].real()), static_cast<float>(warp.offset[q].imag())});
+  }
+  return table;
+}
+
+shader::vec2 to_floats(const std::array<double, 2>& v) {
+  return {static_cast<float>(v[0]), static_cast<float>(v[1])};
+}
+
+shader::FaceMap to_face_map(const PlacedFace& face) {
+  shader::FaceMap map{};
+  std::array<double, 2> value = face.map.value;
+  map.texel = {face.map.origin[0], face.map.origin[1]};
+  if (!face.warped) {
+    for (int i = 0; i < 2; ++i) {
+      map.pixel[i] = static_cast<std::int32_t>(std::floor(value[i]));
+      value[i] -= map.pixel[i];
+    }
+  }
+  map.value = to_floats(value);
+  map.dx = to_floats(face.map.dx);
+  map.dy = to_floats(face.map.dy);
+  map.axis = to_floats(face.footprint.axis);
+  map.level = static_cast<float>(face.footprint.level);
+  map.probes = static_cast<std::uint32_t>(face.footprint.probes);
+  map.flags = (face.warped ? shader::face_warped : 0) | (face.clamped ? shader::face_clamped : 0);
+  return map;
+}
+
+// Orders the passes: what one writes, the next reads.
+void barrier(const Device& device, VkCommandBuffer commands, VkPipelineStageFlags from,
+             VkAccessFlags written) {
+  VkMemoryBarrier memory{VK_STRUCTURE_TYPE_MEMORY_BARRIER};
+  memory.srcAccessMask = written;
+  memory.dstAccessMask = VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT | VK_ACCESS_HOST_READ_BIT;
+  device.functions().vkCmdPipelineBarrier(commands, from,
+                                          VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT | VK_PIPELINE_STAGE_HOST_BIT,
+                                          0, 1, &memory, 0, nullptr, 0, nullptr);
+}
+
+}  // namespace
+
+// One call of run(): what its tiles have in common.
+struct GpuTransfer::Run {
+  const Transfer& transfer;
+  Image& texture;
+  bool keep_samples;
+  TransferResult result{};
+  Buffer decal{};
+  std::size_t first_level = 0;  // In `decal`, once that is there.
+  std::vector<shader::vec4> table{};
+  Buffer large_table{};
+
+  Result<void> upload_decal(const Device& device, std::size_t needed_level);
+};
+
+Result<void> GpuTransfer::Run::upload_decal(const Device& device, std::size_t needed_level) {
+  if (decal.size() > 0 && first_level <= needed_level) return {};
+  const std::vector<std::uint16_t> halves = packed_levels(*transfer.image, needed_level);
+  const std::uint64_t bytes = halves.size() * sizeof(std::uint16_t);
+  if (bytes > device.properties().limits.maxStorageBufferRange) {
+    return fail(
+        ErrorCode::device_failed,
+        fmt::format(
+            "a decal image of {} x {} pixels needs {} MB in one piece, more than the device '{}' allows "
+            "({} MB); use a smaller image or another device",
+            transfer.image->levels[0].width, transfer.image->levels[0].height, bytes >> 20, device.name(),
+            device.properties().limits.maxStorageBufferRange >> 20));
+  }
+  APPLIQUE_TRY(decal, make_buffer(device, "decal image", halves, storage));
+  first_level = needed_level;
+  return {};
+}
+
+Result<GpuTransfer> GpuTransfer::create(const Device& device, const GpuTransferOptions& options) {
+  GpuTransfer result;
+  result.device_ = &device;
+  result.options_ = options;
+  result.options_.tile = std::clamp(options.tile, 8, 16384);
+  APPLIQUE_TRY(
+      result.cover_,
+      ComputePipeline::create(
+          device,
+          {"transfer cover", applique_spirv_transfer_cover, {0, 2}, {}, sizeof(shader::TransferConstants)}));
+  APPLIQUE_TRY(result.nearest_, ComputePipeline::create(device, {"transfer nearest",
+                                                                 applique_spirv_transfer_nearest,
+                                                                 {0, 1, 2},
+                                                                 {},
+                                                                 sizeof(shader::TransferConstants)}));
+  return result;
+}
+
+Result<const ComputePipeline*> GpuTransfer::shading_pipeline(Shading shading) {
+  std::optional<ComputePipeline>& pipeline = shade_[static_cast<std::size_t>(shading)];
+  if (!pipeline) {
+    ComputePipelineInfo info{"transfer shade",
+                             applique_spirv_transfer_shade,
+                             {0, 1, 2, 3, 4, 5, 6},
+                             {7},
+                             sizeof(shader::TransferConstants),
+                             shading != Shading::linear};
+    if (shading == Shading::large_warp) {
+      info.spirv = applique_spirv_transfer_shade_large;
+      info.storage.push_back(8);
+    }
+    APPLIQUE_TRY(pipeline, ComputePipeline::create(*device_, info));
+  }
+  return &*pipeline;
+}
+
+Result<TransferResult> GpuTransfer::run(const Transfer& transfer, Image& texture, bool keep_samples) {
+  Run run{transfer, texture, keep_samples};
+  if (transfer.warp && transfer.warp->steps > 0) run.table = warp_table(*transfer.warp);
+  for (int y = 0; y < texture.height; y += options_.tile) {
+    for (int x = 0; x < texture.width; x += options_.tile) {
+      APPLIQUE_CHECK(run_tile(run, {x, y, std::min(options_.tile, texture.width - x),
+                                    std::min(options_.tile, texture.height - y)}));
+    }
+  }
+  std::sort(run.result.samples.begin(), run.result.samples.end(),
+            [](const auto& a, const auto& b) { return a.y != b.y ? a.y < b.y : a.x < b.x; });
+  if (texture.channels < 3 && run.result.covered_texels + run.result.gutter_texels > 0) texture.channels += 2;
+  return run.result;
+}
+
+Result<void> GpuTransfer::run_tile(Run& run, const TexelRect& tile) {
+  const Device& device = *device_;
+  const Transfer& transfer = run.transfer;
+  TilePlan plan = plan_tile(transfer, run.texture.width, run.texture.height, tile);
+  if (plan.jobs.empty()) return {};
+  const TexelRect &work = plan.work, &region = plan.region;
+  const std::size_t foreign_first = plan.jobs.size();
+  plan.jobs.insert(plan.jobs.end(), plan.foreign_jobs.begin(), plan.foreign_jobs.end());
+
+  // What does not fit into the device's buffers is done in smaller pieces.
+  const std::size_t work_texels = static_cast<std::size_t>(work.width) * work.height;
+  const std::size_t region_texels = static_cast<std::size_t>(region.width) * region.height;
+  const std::size_t largest =
+      std::max({16 * work_texels, 4 * region_texels, plan.jobs.size() * sizeof(plan.jobs[0]),
+                plan.placements.size() * sizeof(shader::FaceMap)});
+  if (largest > device.properties().limits.maxStorageBufferRange && std::max(tile.width, tile.height) > 1) {
+    const int left = (tile.width + 1) / 2, top = (tile.height + 1) / 2;
+    for (const TexelRect& part :
+         {TexelRect{tile.x, tile.y, left, top}, TexelRect{tile.x + left, tile.y, tile.width - left, top},
+          TexelRect{tile.x, tile.y + top, left, tile.height - top},
+          TexelRect{tile.x + left, tile.y + top, tile.width - left, tile.height - top}}) {
+      if (part.width > 0 && part.height > 0) APPLIQUE_CHECK(run_tile(run, part));
+    }
+    return {};
+  }
+
+  std::vector<shader::FaceMap> faces;
+  faces.reserve(plan.placements.size());
+  double finest = shader::max_levels;
+  bool warped = false;
+  for (const Placement& placement : plan.placements) {
+    const PlacedFace face = place_face(transfer, placement);
+    faces.push_back(to_face_map(face));
+    finest = std::min(finest, face.footprint.level);
+    warped |= face.warped;
+  }
+  APPLIQUE_CHECK(run.upload_decal(device, static_cast<std::size_t>(finest)));
+  const Shading shading = !warped                                           ? Shading::linear
+                          : run.table.size() <= shader::warp_table_capacity ? Shading::warped
+                                                                            : Shading::large_warp;
+  APPLIQUE_TRY(const ComputePipeline* shade, shading_pipeline(shading));
+
+  const DecalImage& image = *transfer.image;
+  std::vector<Tables> tables(1);
+  for (std::size_t k = run.first_level; k < std::min<std::size_t>(image.levels.size(), shader::max_levels);
+       ++k) {
+    const DecalImage::Level& level = image.levels[k];
+    tables[0].levels[k] = {level.offset - image.levels[run.first_level].offset, level.width, level.height, 0};
+  }
+  if (shading == Shading::warped) std::copy(run.table.begin(), run.table.end(), tables[0].warp.begin());
+  if (shading == Shading::large_warp && run.large_table.size() == 0) {
+    APPLIQUE_TRY(run.large_table, make_buffer(device, "warp tables", run.table, storage));
+  }
+
+  std::vector<std::uint16_t> texels(4 * work_texels);
+  const std::size_t row = 4 * static_cast<std::size_t>(work.width);
+  for (int y = 0; y < work.height; ++y) {
+    std::memcpy(&texels[y * row], run.texture.pixel(work.x, work.y + y), row * sizeof(texels[0]));
+  }
+  APPLIQUE_TRY(const Buffer owner_buffer, Buffer::create(device, "owners", 4 * region_texels, storage));
+  APPLIQUE_TRY(const Buffer nearest_buffer, Buffer::create(device, "nearest", 4 * region_texels, storage));
+  APPLIQUE_TRY(const Buffer job_buffer, make_buffer(device, "jobs", plan.jobs, storage));
+  APPLIQUE_TRY(const Buffer near_block_buffer,
+               make_buffer(device, "nearest blocks", plan.nearest_blocks, storage));
+  APPLIQUE_TRY(const Buffer block_buffer, make_buffer(device, "blocks", plan.blocks, storage));
+  APPLIQUE_TRY(const Buffer face_buffer, make_buffer(device, "faces", faces, storage));
+  APPLIQUE_TRY(const Buffer texel_buffer, make_buffer(device, "texels", texels, storage));
+  APPLIQUE_TRY(const Buffer table_buffer,
+               make_buffer(device, "tables", tables, VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT));
+  const std::size_t sample_bytes = sizeof(shader::vec2) * (run.keep_samples ? work_texels : 1);
+  APPLIQUE_TRY(const Buffer outcome_buffer,
+               Buffer::create(device, "outcome", sizeof(OutcomeCounts) + sample_bytes, storage));
+
+  shader::TransferConstants constants{};
+  constants.region_size = {region.width, region.height};
+  constants.work_origin = {work.x - region.x, work.y - region.y};
+  constants.work_size = {work.width, work.height};
+  constants.gutter = static_cast<std::int32_t>(std::min(transfer.gutter, 255u));
+  constants.opacity = static_cast<float>(transfer.opacity);
+  constants.blend = static_cast<std::uint32_t>(transfer.blend);
+  constants.opaque = transfer.opaque ? 1 : 0;
+  constants.max_value = run.texture.bits == 8 ? 255.0F : 65535.0F;
+  constants.keep_samples = run.keep_samples ? 1 : 0;
+  if (warped) {
+    constants.steps = transfer.warp->steps;
+    constants.features = transfer.warp->features;
+    constants.pairs = static_cast<std::uint32_t>(transfer.warp->pairs.size());
+  }
+  constants.half_size = to_floats({0.5 * image.frame.width, 0.5 * image.frame.height});
+  constants.pixels_per_unit = static_cast<float>(image.frame.pixels_per_unit());
+
+  cover_.bind({{0, &owner_buffer}, {2, &job_buffer}});
+  nearest_.bind({{0, &owner_buffer}, {1, &nearest_buffer}, {2, &near_block_buffer}});
+  std::vector<ComputePipeline::Binding> bindings = {
+      {0, &owner_buffer}, {1, &nearest_buffer}, {2, &block_buffer},   {3, &face_buffer},
+      {4, &texel_buffer}, {5, &run.decal},      {6, &outcome_buffer}, {7, &table_buffer}};
+  if (shading == Shading::large_warp) bindings.push_back({8, &run.large_table});
+  shade->bind(bindings);
+
+  const std::uint32_t most_groups = device.properties().limits.maxComputeWorkGroupCount[0];
+  const auto dispatch = [&](VkCommandBuffer commands, const ComputePipeline& pipeline, std::size_t first,
+                            std::size_t last) {
+    for (; first < last; first += most_groups) {
+      constants.first = static_cast<std::uint32_t>(first);
+      pipeline.dispatch(commands, std::as_bytes(std::span(&constants, 1)),
+                        static_cast<std::uint32_t>(std::min<std::size_t>(last - first, most_groups)));
+    }
+    barrier(device, commands, VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT, VK_ACCESS_SHADER_WRITE_BIT);
+  };
+  APPLIQUE_CHECK(device.run([&](VkCommandBuffer commands) {
+    const VolkDeviceTable& vk = device.functions();
+    vk.vkCmdFillBuffer(commands, owner_buffer.handle(), 0, VK_WHOLE_SIZE, 0);
+    vk.vkCmdFillBuffer(commands, nearest_buffer.handle(), 0, VK_WHOLE_SIZE, shader::no_texel);
+    vk.vkCmdFillBuffer(commands, outcome_buffer.handle(), 0, sizeof(OutcomeCounts), 0);
+    vk.vkCmdFillBuffer(commands, outcome_buffer.handle(), sizeof(OutcomeCounts), VK_WHOLE_SIZE,
+                       0xffffffff);  // NaN
+    barrier(device, commands, VK_PIPELINE_STAGE_TRANSFER_BIT, VK_ACCESS_TRANSFER_WRITE_BIT);
+    dispatch(commands, cover_, 0, foreign_first);
+    dispatch(commands, cover_, foreign_first, plan.jobs.size());
+    dispatch(commands, nearest_, 0, plan.nearest_blocks.size());
+    dispatch(commands, *shade, 0, plan.blocks.size());
+  }));
+
+  APPLIQUE_CHECK(texel_buffer.read(device, std::as_writable_bytes(std::span(texels))));
+  for (int y = 0; y < work.height; ++y) {
+    std::memcpy(run.texture.pixel(work.x, work.y + y), &texels[y * row], row * sizeof(texels[0]));
+  }
+  std::vector<std::byte> outcome(sizeof(OutcomeCounts) + (run.keep_samples ? sample_bytes : 0));
+  APPLIQUE_CHECK(outcome_buffer.read(device, outcome));
+  OutcomeCounts counts{};
+  std::memcpy(&counts, outcome.data(), sizeof(counts));
+  run.result.covered_texels += counts.covered;
+  run.result.gutter_texels += counts.gutter;
+  run.result.shared_texels += counts.shared;
+  for (std::size_t i = 0; run.keep_samples && i < work_texels; ++i) {
+    shader::vec2 sample;
+    std::memcpy(&sample, &outcome[sizeof(OutcomeCounts) + i * sizeof(sample)], sizeof(sample));
+    if (std::isnan(sample[0])) continue;
+    run.result.samples.push_back({static_cast<std::uint32_t>(work.x + static_cast<int>(i % work.width)),
+                                  static_cast<std::uint32_t>(work.y + static_cast<int>(i / work.width)),
+                                  {sample[0], sample[1]}});
+  }
+  return {};
+}
+
+}  // namespace applique

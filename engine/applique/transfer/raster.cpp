@@ -1,0 +1,351 @@
+#include "applique/transfer/raster.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <optional>
+
+namespace applique {
+namespace {
+
+using FixedCorners = std::array<std::array<std::int64_t, 2>, 3>;
+
+constexpr std::int64_t subtexels = 256;
+constexpr int block = shader::block_size;
+constexpr double max_extent = 131072;  // Texels; keeps edge functions within 32 bits over a block.
+constexpr int max_periods = 64;
+
+std::int64_t floor_divide(std::int64_t a, std::int64_t b) {
+  return a / b - (a % b < 0 ? 1 : 0);
+}
+
+// One copy of the plane along one axis: texel t of the plane is seen at sign * t + shift.
+struct AxisCopy {
+  int sign;
+  std::int64_t shift;  // Texels.
+};
+
+// The copies by which [lower, upper] is seen in [first, last), all in texels, in the order of the plane.
+std::vector<AxisCopy> axis_copies(WrapMode mode, int size, double lower, double upper, int first, int last) {
+  if (mode == WrapMode::clamp) return {{1, 0}};
+  std::vector<AxisCopy> copies;
+  if (mode == WrapMode::repeat) {
+    const double low = std::floor((first - upper) / size), high = std::ceil((last - lower) / size);
+    if (high - low > max_periods) return {};
+    for (auto k = static_cast<std::int64_t>(high); k >= static_cast<std::int64_t>(low); --k) {
+      copies.push_back({1, k * size});
+    }
+  } else {
+    const double low = std::floor(lower / size), high = std::floor(upper / size);
+    if (high - low > max_periods) return {};
+    for (auto k = static_cast<std::int64_t>(low); k <= static_cast<std::int64_t>(high); ++k) {
+      copies.push_back(k % 2 == 0 ? AxisCopy{1, -k * size} : AxisCopy{-1, (k + 1) * size});
+    }
+  }
+  return copies;
+}
+
+struct Bounds {
+  double lower[2], upper[2];
+};
+
+std::optional<Bounds> bounds_of(const std::array<Texel, 3>& corners) {
+  Bounds bounds{};
+  for (int axis = 0; axis < 2; ++axis) {
+    const auto [low, high] = std::minmax({corners[0][axis], corners[1][axis], corners[2][axis]});
+    if (!(high - low <= max_extent) || !(std::abs(low) < 1e9)) return std::nullopt;
+    bounds.lower[axis] = low;
+    bounds.upper[axis] = high;
+  }
+  return bounds;
+}
+
+// Calls `visit(corners, bounds)` for every copy of a triangle that touches `window`, a rectangle of the
+// plane.
+template <class Visit>
+void for_each_copy(const Transfer& transfer, const std::array<Texel, 3>& corners, int width, int height,
+                   const TexelRect& window, Visit visit) {
+  const std::optional<Bounds> bounds = bounds_of(corners);
+  if (!bounds) return;
+  const auto copies_x = axis_copies(transfer.wrap_u, width, bounds->lower[0], bounds->upper[0], window.x,
+                                    window.x + window.width);
+  const auto copies_y = axis_copies(transfer.wrap_v, height, bounds->lower[1], bounds->upper[1], window.y,
+                                    window.y + window.height);
+  for (const AxisCopy& y : copies_y) {
+    const double y0 =
+        y.sign * (y.sign > 0 ? bounds->lower[1] : bounds->upper[1]) + static_cast<double>(y.shift);
+    const double y1 = y0 + bounds->upper[1] - bounds->lower[1];
+    if (y1 < window.y || y0 > window.y + window.height) continue;
+    for (const AxisCopy& x : copies_x) {
+      const double x0 =
+          x.sign * (x.sign > 0 ? bounds->lower[0] : bounds->upper[0]) + static_cast<double>(x.shift);
+      const double x1 = x0 + bounds->upper[0] - bounds->lower[0];
+      if (x1 < window.x || x0 > window.x + window.width) continue;
+      visit(x, y, Bounds{{x0, y0}, {x1, y1}});
+    }
+  }
+}
+
+FixedCorners fixed_corners(const std::array<Texel, 3>& corners, const AxisCopy& x, const AxisCopy& y) {
+  FixedCorners fixed;
+  for (int k = 0; k < 3; ++k) {
+    fixed[k][0] = x.sign * std::llround(corners[k][0] * subtexels) + x.shift * subtexels;
+    fixed[k][1] = y.sign * std::llround(corners[k][1] * subtexels) + y.shift * subtexels;
+  }
+  return fixed;
+}
+
+std::array<Texel, 3> moved_corners(const std::array<Texel, 3>& corners, const AxisCopy& x,
+                                   const AxisCopy& y) {
+  std::array<Texel, 3> moved;
+  for (int k = 0; k < 3; ++k) {
+    moved[k] = {x.sign * corners[k][0] + static_cast<double>(x.shift),
+                y.sign * corners[k][1] + static_cast<double>(y.shift)};
+  }
+  return moved;
+}
+
+// Which blocks of a region, one byte each.
+struct BlockMask {
+  int width, height;
+  std::vector<std::uint8_t> set;
+
+  explicit BlockMask(const TexelRect& region)
+      : width((region.width + block - 1) / block),
+        height((region.height + block - 1) / block),
+        set(static_cast<std::size_t>(width) * height) {}
+
+  [[nodiscard]] BlockMask dilated(int by_x, int by_y) const {
+    BlockMask rows = *this, result = *this;
+    std::fill(rows.set.begin(), rows.set.end(), std::uint8_t{0});
+    std::fill(result.set.begin(), result.set.end(), std::uint8_t{0});
+    for (int y = 0; y < height; ++y) {
+      for (int x = 0; x < width; ++x) {
+        if (!set[static_cast<std::size_t>(y) * width + x]) continue;
+        auto row = rows.set.begin() + static_cast<std::ptrdiff_t>(y) * width;
+        std::fill(row + std::max(0, x - by_x), row + std::min(width, x + by_x + 1), std::uint8_t{1});
+      }
+    }
+    for (int y = 0; y < height; ++y) {
+      for (int near = std::max(0, y - by_y); near <= std::min(height - 1, y + by_y); ++near) {
+        for (int x = 0; x < width; ++x) {
+          result.set[static_cast<std::size_t>(y) * width + x] |=
+              rows.set[static_cast<std::size_t>(near) * width + x];
+        }
+      }
+    }
+    return result;
+  }
+  [[nodiscard]] std::vector<std::uint32_t> list() const {
+    std::vector<std::uint32_t> blocks;
+    for (int y = 0; y < height; ++y) {
+      for (int x = 0; x < width; ++x) {
+        if (set[static_cast<std::size_t>(y) * width + x]) {
+          blocks.push_back(static_cast<std::uint32_t>(x) | static_cast<std::uint32_t>(y) << 16);
+        }
+      }
+    }
+    return blocks;
+  }
+};
+
+// Jobs for the blocks of the region that a triangle (plane coordinates) touches. `allowed` limits the blocks.
+void add_jobs(FixedCorners corners, std::uint32_t key, const TexelRect& region, const BlockMask* allowed,
+              std::vector<shader::RasterJob>& jobs) {
+  const auto edge_area = [](const auto& p, const auto& q, const auto& r) {
+    return (q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0]);
+  };
+  const std::int64_t area = edge_area(corners[0], corners[1], corners[2]);
+  if (area == 0) return;
+  if (area < 0) std::swap(corners[1], corners[2]);
+
+  std::int64_t first[2], last[2];  // Blocks.
+  const std::int64_t origin[2] = {region.x, region.y}, size[2] = {region.width, region.height};
+  for (int axis = 0; axis < 2; ++axis) {
+    const auto [low, high] = std::minmax({corners[0][axis], corners[1][axis], corners[2][axis]});
+    const std::int64_t low_texel = floor_divide(low, subtexels) - origin[axis];
+    const std::int64_t high_texel = floor_divide(high, subtexels) - origin[axis];
+    if (high_texel < 0 || low_texel >= size[axis]) return;
+    first[axis] = std::max<std::int64_t>(low_texel, 0) / block;
+    last[axis] = std::min(high_texel, size[axis] - 1) / block;
+  }
+
+  std::int64_t a[3], b[3],
+      start[3];  // start: 1/256 of the edge function at the region's first texel, but exact.
+  for (int k = 0; k < 3; ++k) {
+    const auto &p = corners[k], &q = corners[(k + 1) % 3];
+    const std::int64_t dx = q[0] - p[0], dy = q[1] - p[1];
+    a[k] = -dy;
+    b[k] = dx;
+    const std::int64_t x = origin[0] * subtexels + subtexels / 2, y = origin[1] * subtexels + subtexels / 2;
+    const bool owns_edge = dy > 0 || (dy == 0 && dx < 0);
+    start[k] = floor_divide(dx * (y - p[1]) - dy * (x - p[0]) - (owns_edge ? 0 : 1), subtexels);
+  }
+  // Within a block the edge function changes by less than this, so clamping beyond it keeps all signs.
+  constexpr std::int64_t far = std::int64_t{1} << 30;
+  for (std::int64_t by = first[1]; by <= last[1]; ++by) {
+    for (std::int64_t bx = first[0]; bx <= last[0]; ++bx) {
+      if (allowed && !allowed->set[static_cast<std::size_t>(by) * allowed->width + bx]) continue;
+      shader::RasterJob job{};
+      bool outside = false;
+      for (int k = 0; k < 3; ++k) {
+        const std::int64_t c = start[k] + block * (a[k] * bx + b[k] * by);
+        outside |= c + (block - 1) * (std::max<std::int64_t>(a[k], 0) + std::max<std::int64_t>(b[k], 0)) < 0;
+        job.a[k] = static_cast<std::int32_t>(a[k]);
+        job.b[k] = static_cast<std::int32_t>(b[k]);
+        job.c[k] = static_cast<std::int32_t>(std::clamp(c, -far, far));
+      }
+      if (outside) continue;
+      job.key = key;
+      job.x = static_cast<std::uint32_t>(bx * block);
+      job.y = static_cast<std::uint32_t>(by * block);
+      jobs.push_back(job);
+    }
+  }
+}
+
+double triangle_area2(const std::array<Texel, 3>& c) {
+  return (c[1][0] - c[0][0]) * (c[2][1] - c[0][1]) - (c[1][1] - c[0][1]) * (c[2][0] - c[0][0]);
+}
+
+std::array<Texel, 3> rounded(std::array<Texel, 3> corners) {
+  for (Texel& corner : corners) {
+    for (double& value : corner) value = static_cast<double>(std::llround(value * subtexels)) / subtexels;
+  }
+  return corners;
+}
+
+AffineMap affine_map(const std::array<Texel, 3>& corners,
+                     const std::array<std::array<double, 2>, 3>& values) {
+  AffineMap map{};
+  const double area = triangle_area2(corners);
+  const double ux = corners[1][0] - corners[0][0], uy = corners[1][1] - corners[0][1];
+  const double vx = corners[2][0] - corners[0][0], vy = corners[2][1] - corners[0][1];
+  for (int axis = 0; axis < 2; ++axis) {
+    map.origin[axis] =
+        static_cast<int>(std::floor((corners[0][axis] + corners[1][axis] + corners[2][axis]) / 3));
+  }
+  const double x = map.origin[0] + 0.5 - corners[0][0], y = map.origin[1] + 0.5 - corners[0][1];
+  for (int i = 0; i < 2; ++i) {
+    const double du = values[1][i] - values[0][i], dv = values[2][i] - values[0][i];
+    map.dx[i] = (du * vy - dv * uy) / area;
+    map.dy[i] = (dv * ux - du * vx) / area;
+    map.value[i] = values[0][i] + map.dx[i] * x + map.dy[i] * y;
+  }
+  return map;
+}
+
+// From the singular values of the map from a texel to pixels, as anisotropic texture units do.
+Footprint footprint_of(const AffineMap& map, std::size_t levels) {
+  const double a = map.dx[0], b = map.dy[0], c = map.dx[1], d = map.dy[1];
+  // The longer axis is the eigenvector of J J^T with the larger eigenvalue.
+  const double xx = a * a + b * b, xy = a * c + b * d, yy = c * c + d * d;
+  const double middle = 0.5 * (xx + yy), spread = std::hypot(0.5 * (xx - yy), xy);
+  const double major = std::sqrt(middle + spread), minor = std::sqrt(std::max(0.0, middle - spread));
+  const double angle = 0.5 * std::atan2(2 * xy, xx - yy);
+
+  Footprint footprint;
+  footprint.axis = {major * std::cos(angle), major * std::sin(angle)};
+  footprint.probes = static_cast<int>(std::clamp(std::ceil(major / std::max(minor, 1.0)), 1.0, 16.0));
+  footprint.level = std::clamp(std::log2(std::max({major / footprint.probes, minor, 1.0})), 0.0,
+                               static_cast<double>(levels - 1));
+  return footprint;
+}
+
+}  // namespace
+
+TilePlan plan_tile(const Transfer& transfer, int width, int height, const TexelRect& tile) {
+  const int gutter = static_cast<int>(std::min(transfer.gutter, 255u));
+  TilePlan plan;
+
+  // The region of a rectangle: its margin may cross the border where the axis repeats.
+  const auto with_margin = [&](const TexelRect& r) {
+    int x0 = r.x - gutter, y0 = r.y - gutter, x1 = r.x + r.width + gutter, y1 = r.y + r.height + gutter;
+    if (transfer.wrap_u != WrapMode::repeat) x0 = std::max(x0, 0), x1 = std::min(x1, width);
+    if (transfer.wrap_v != WrapMode::repeat) y0 = std::max(y0, 0), y1 = std::min(y1, height);
+    return TexelRect{x0, y0, x1 - x0, y1 - y0};
+  };
+
+  std::vector<std::uint32_t> order(transfer.faces.size());
+  std::iota(order.begin(), order.end(), 0u);
+  std::stable_sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
+    return transfer.faces[a].sheet < transfer.faces[b].sheet;
+  });
+
+  std::vector<FixedCorners> fixed;
+  const TexelRect window = with_margin(tile);
+  int x0 = tile.x + tile.width, y0 = tile.y + tile.height, x1 = tile.x, y1 = tile.y;
+  for (std::uint32_t face : order) {
+    const auto& corners = transfer.faces[face].texel;
+    for_each_copy(transfer, corners, width, height, window,
+                  [&](const AxisCopy& x, const AxisCopy& y, const Bounds& bounds) {
+                    plan.placements.push_back({face, moved_corners(corners, x, y)});
+                    fixed.push_back(fixed_corners(corners, x, y));
+                    x0 = std::min(x0, static_cast<int>(std::floor(bounds.lower[0])) - gutter - 1);
+                    y0 = std::min(y0, static_cast<int>(std::floor(bounds.lower[1])) - gutter - 1);
+                    x1 = std::max(x1, static_cast<int>(std::ceil(bounds.upper[0])) + gutter + 1);
+                    y1 = std::max(y1, static_cast<int>(std::ceil(bounds.upper[1])) + gutter + 1);
+                  });
+  }
+  x0 = std::max(x0, tile.x), y0 = std::max(y0, tile.y);
+  x1 = std::min(x1, tile.x + tile.width), y1 = std::min(y1, tile.y + tile.height);
+  if (plan.placements.empty() || x1 <= x0 || y1 <= y0) return {};
+  plan.work = {x0, y0, x1 - x0, y1 - y0};
+  plan.region = with_margin(plan.work);
+
+  for (std::size_t i = 0; i < plan.placements.size(); ++i) {
+    for (Texel& corner : plan.placements[i].corners) {
+      corner[0] -= plan.region.x;
+      corner[1] -= plan.region.y;
+    }
+    add_jobs(fixed[i], static_cast<std::uint32_t>(i + 1), plan.region, nullptr, plan.jobs);
+  }
+
+  BlockMask touched(plan.region);
+  for (const shader::RasterJob& job : plan.jobs) {
+    touched.set[static_cast<std::size_t>(job.y / block) * touched.width + job.x / block] = 1;
+  }
+  const int reach = (gutter + block - 1) / block;
+  const BlockMask changed = touched.dilated(reach, reach);
+  const BlockMask seen = changed.dilated(reach, reach);
+  plan.blocks = changed.list();
+  plan.nearest_blocks = changed.dilated(0, reach).list();
+
+  for (const auto& corners : transfer.foreign) {
+    for_each_copy(transfer, corners, width, height, plan.region,
+                  [&](const AxisCopy& x, const AxisCopy& y, const Bounds&) {
+                    add_jobs(fixed_corners(corners, x, y), shader::foreign_bit, plan.region, &seen,
+                             plan.foreign_jobs);
+                  });
+  }
+  return plan;
+}
+
+PlacedFace place_face(const Transfer& transfer, const Placement& placement) {
+  const TransferFace& face = transfer.faces[placement.face];
+  const ImageFrame& frame = transfer.image->frame;
+  PlacedFace placed;
+
+  // A face that has an area only once its corners are rounded is mapped from the rounded corners.
+  std::array<Texel, 3> corners = placement.corners;
+  const double rounded_area = triangle_area2(rounded(corners));
+  if (std::abs(triangle_area2(corners)) < 0.5 * std::abs(rounded_area)) corners = rounded(corners);
+
+  std::array<std::array<double, 2>, 3> pixels, plane;
+  double longest = 0;
+  for (int k = 0; k < 3; ++k) {
+    const Pixel pixel = frame.to_pixel(face.image[k]);
+    pixels[k] = {pixel.x, pixel.y};
+    plane[k] = {face.plane[k].real(), face.plane[k].imag()};
+    const Texel &p = corners[k], &q = corners[(k + 1) % 3];
+    longest = std::max(longest, std::hypot(q[0] - p[0], q[1] - p[1]));
+  }
+  const AffineMap to_pixels = affine_map(corners, pixels);
+  placed.footprint = footprint_of(to_pixels, transfer.image->levels.size());
+  placed.warped = !face.linear && transfer.warp && transfer.warp->steps > 0;
+  placed.map = placed.warped ? affine_map(corners, plane) : to_pixels;
+  placed.clamped = std::abs(triangle_area2(corners)) < longest;
+  return placed;
+}
+
+}  // namespace applique

@@ -1,0 +1,72 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "applique/transfer/transfer.h"
+
+#include "transfer_types.h"
+
+namespace applique {
+
+/// A rectangle of texels.
+struct TexelRect {
+  int x = 0, y = 0, width = 0, height = 0;
+};
+
+/// A face as a region sees it: moved by whole periods of the texture, mirrored where the wrap mode says so.
+struct Placement {
+  std::uint32_t face;            ///< Index in Transfer::faces.
+  std::array<Texel, 3> corners;  ///< Region texels.
+};
+
+/// What is to be drawn in one tile of a texture, the same for the GPU and for the CPU. The *work* are the
+/// tile's texels that may change; the *region* is the work with a margin of the gutter's width, in which
+/// owners are needed. Where an axis repeats, the region may reach over the border: it lies in the texture's
+/// unwrapped plane.
+struct TilePlan {
+  TexelRect work;                       ///< In the texture. Empty: nothing to do.
+  TexelRect region;                     ///< In the unwrapped plane.
+  std::vector<Placement> placements;    ///< From below to above: key k is placement k - 1.
+  std::vector<shader::RasterJob> jobs;  ///< Of the faces.
+  std::vector<shader::RasterJob> foreign_jobs;
+  std::vector<std::uint32_t> blocks;  ///< Blocks that may change: x | y << 16, in blocks of the region.
+  std::vector<std::uint32_t> nearest_blocks;  ///< Blocks whose row-wise nearest texels those need.
+};
+
+/// Plans the part of a transfer that lies in `tile`, a rectangle of the texture (at most 65536 texels a
+/// side).
+///
+/// Coverage is decided with corners rounded to 1/256 texel and exact integer edge functions; of two triangles
+/// on either side of an edge through a texel's centre, one has it.
+TilePlan plan_tile(const Transfer& transfer, int texture_width, int texture_height, const TexelRect& tile);
+
+/// The affine map of a placement, from region texels' centres to the plane or to pixels.
+struct AffineMap {
+  std::array<double, 2> value;   ///< At the centre of texel `origin`.
+  std::array<double, 2> dx, dy;  ///< By texel.
+  std::array<int, 2> origin;
+  [[nodiscard]] std::array<double, 2> at(int x, int y) const {
+    return {value[0] + dx[0] * (x - origin[0]) + dy[0] * (y - origin[1]),
+            value[1] + dx[1] * (x - origin[0]) + dy[1] * (y - origin[1])};
+  }
+};
+
+/// How a face's texels sample the image: `probes` trilinear samples along `axis`, at one level (a fraction).
+struct Footprint {
+  std::array<double, 2> axis = {0, 0};  ///< Longer axis of a texel's image, pixels.
+  double level = 0;
+  int probes = 1;  ///< 1 to 16.
+};
+
+/// All that both twins derive from a placement.
+struct PlacedFace {
+  AffineMap map;  ///< To the plane where the face needs the warp, to pixels where it is linear.
+  Footprint footprint;
+  bool warped = false;
+  bool clamped = false;  ///< Thinner than a texel: its gutter repeats its nearest texel, it is not extended.
+};
+PlacedFace place_face(const Transfer& transfer, const Placement& placement);
+
+}  // namespace applique

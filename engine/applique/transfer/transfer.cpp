@@ -1,0 +1,212 @@
+#include "applique/transfer/transfer.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <functional>
+#include <thread>
+
+#include "applique/transfer/raster.h"
+
+namespace applique {
+namespace {
+
+using Colour = std::array<double, 4>;  // Linear light.
+
+double clamp01(double value) {
+  return std::clamp(value, 0.0, 1.0);
+}
+
+// Whose texel each one of the region is, and the nearest owned texel along its row.
+struct Ownership {
+  TexelRect region;
+  std::vector<std::uint32_t> owner;
+  std::vector<std::int16_t> nearest;
+};
+constexpr std::int16_t none_near = 0x7fff;
+
+void cover(const std::vector<shader::RasterJob>& jobs, Ownership& ownership) {
+  constexpr int block = shader::block_size;
+  for (const shader::RasterJob& job : jobs) {
+    const int x0 = static_cast<int>(job.x), y0 = static_cast<int>(job.y);
+    for (int y = 0; y < std::min(block, ownership.region.height - y0); ++y) {
+      for (int x = 0; x < std::min(block, ownership.region.width - x0); ++x) {
+        bool inside = true;
+        for (int k = 0; k < 3; ++k) inside &= job.a[k] * x + job.b[k] * y + job.c[k] >= 0;
+        if (!inside) continue;
+        std::uint32_t& owner =
+            ownership.owner[static_cast<std::size_t>(y0 + y) * ownership.region.width + x0 + x];
+        owner = job.key == shader::foreign_bit ? owner | job.key : std::max(owner, job.key);
+      }
+    }
+  }
+}
+
+void find_nearest_in_row(int y, int gutter, Ownership& ownership) {
+  const std::size_t row = static_cast<std::size_t>(y) * ownership.region.width;
+  for (int x = 0; x < ownership.region.width; ++x) {
+    std::int16_t& nearest = ownership.nearest[row + x];
+    nearest = none_near;
+    for (int i = 0; i <= 2 * gutter; ++i) {
+      const int dx = i % 2 == 0 ? i / 2 : -(i + 1) / 2;
+      if (x + dx < 0 || x + dx >= ownership.region.width || ownership.owner[row + x + dx] == 0) continue;
+      nearest = static_cast<std::int16_t>(dx);
+      break;
+    }
+  }
+}
+
+// The nearest owned texel within the gutter: rows nearest first, the upper one of two.
+std::array<int, 2> find_nearest(int x, int y, int gutter, const Ownership& ownership) {
+  int best = gutter * gutter + 1;
+  std::array<int, 2> seed = {x, y};
+  for (int i = 0; i <= 2 * gutter; ++i) {
+    const int dy = i % 2 == 0 ? i / 2 : -(i + 1) / 2;
+    if (dy * dy >= best) break;
+    if (y + dy < 0 || y + dy >= ownership.region.height) continue;
+    const int dx = ownership.nearest[static_cast<std::size_t>(y + dy) * ownership.region.width + x];
+    if (dx == none_near || dx * dx + dy * dy >= best) continue;
+    best = dx * dx + dy * dy;
+    seed = {x + dx, y + dy};
+  }
+  return seed;
+}
+
+Colour fetch(const DecalImage& image, std::size_t level, double x, double y) {
+  const DecalImage::Level& stored = image.levels[level];
+  if (x < 0 || y < 0 || x >= stored.width || y >= stored.height) return {};
+  const auto& texel =
+      image.texels[stored.offset + static_cast<std::size_t>(y) * stored.width + static_cast<std::size_t>(x)];
+  return {texel[0], texel[1], texel[2], texel[3]};
+}
+
+void add_bilinear(const DecalImage& image, std::size_t level, Pixel pixel, double weight, Colour& sum) {
+  const double scale = std::ldexp(1.0, -static_cast<int>(level));
+  const double x = pixel.x * scale - 0.5, y = pixel.y * scale - 0.5;
+  const double x0 = std::floor(x), y0 = std::floor(y);
+  for (int k = 0; k < 4; ++k) {
+    const double wx = k % 2 ? x - x0 : x0 + 1 - x, wy = k / 2 ? y - y0 : y0 + 1 - y;
+    const Colour texel = fetch(image, level, x0 + k % 2, y0 + k / 2);
+    for (int c = 0; c < 4; ++c) sum[c] += weight * wx * wy * texel[c];
+  }
+}
+
+Colour sample_decal(const DecalImage& image, Pixel pixel, const Footprint& footprint) {
+  const auto finer = static_cast<std::size_t>(footprint.level);
+  const double blend = footprint.level - static_cast<double>(finer);
+  Colour sum{};
+  for (int i = 0; i < footprint.probes; ++i) {
+    const double along = (i + 0.5) / footprint.probes - 0.5;
+    const Pixel probe = {pixel.x + along * footprint.axis[0], pixel.y + along * footprint.axis[1]};
+    add_bilinear(image, finer, probe, (1 - blend) / footprint.probes, sum);
+    if (blend > 0) add_bilinear(image, finer + 1, probe, blend / footprint.probes, sum);
+  }
+  return sum;
+}
+
+// `source` is premultiplied, the others straight. W3C compositing, §5 to §10.
+Colour composite(const Colour& source, const Colour& below, BlendMode mode, bool opaque) {
+  const double alpha = source[3], backdrop = opaque ? 1 : below[3];
+  Colour result{};
+  for (int c = 0; c < 3; ++c) {
+    double mixed = source[c];
+    if (mode == BlendMode::multiply) mixed = source[c] * below[c];
+    if (mode == BlendMode::screen) mixed = source[c] + alpha * below[c] - source[c] * below[c];
+    const double premultiplied =
+        (1 - backdrop) * source[c] + backdrop * mixed + (1 - alpha) * backdrop * below[c];
+    result[c] = premultiplied / (alpha + backdrop * (1 - alpha));
+  }
+  result[3] = alpha + below[3] * (1 - alpha);
+  return result;
+}
+
+void blend_over(std::uint16_t* texel, const Colour& source, const Transfer& transfer, int bits) {
+  Colour below;
+  for (int c = 0; c < 3; ++c) below[c] = srgb_to_linear(texel[c] / 65535.0);
+  below[3] = texel[3] / 65535.0;
+  const Colour result = composite(source, below, transfer.blend, transfer.opaque);
+  for (int c = 0; c < 4; ++c) {
+    const double value = c < 3 ? linear_to_srgb(clamp01(result[c])) : clamp01(result[c]);
+    const double steps = bits == 8 ? 255 : 65535;
+    texel[c] = static_cast<std::uint16_t>(std::floor(value * steps + 0.5) * (65535 / steps));
+  }
+}
+
+// Runs `work(i)` for i in [0, count) on all cores.
+void parallel_for(int count, const std::function<void(int)>& work) {
+  const int threads = std::clamp(static_cast<int>(std::thread::hardware_concurrency()), 1, 64);
+  std::atomic<int> next = 0;
+  const auto run = [&] {
+    for (int i = next++; i < count; i = next++) work(i);
+  };
+  std::vector<std::thread> pool;
+  for (int i = 1; i < std::min(threads, count); ++i) pool.emplace_back(run);
+  run();
+  for (std::thread& thread : pool) thread.join();
+}
+
+}  // namespace
+
+TransferResult transfer_on_cpu(const Transfer& transfer, Image& texture, bool keep_samples) {
+  const TilePlan plan =
+      plan_tile(transfer, texture.width, texture.height, {0, 0, texture.width, texture.height});
+  if (plan.work.width == 0) return {};
+  const int gutter = static_cast<int>(std::min(transfer.gutter, 255u));
+  const TexelRect &work = plan.work, &region = plan.region;
+
+  Ownership ownership{region, {}, {}};
+  ownership.owner.resize(static_cast<std::size_t>(region.width) * region.height);
+  ownership.nearest.resize(ownership.owner.size());
+  cover(plan.jobs, ownership);
+  cover(plan.foreign_jobs, ownership);
+  parallel_for(region.height, [&](int y) { find_nearest_in_row(y, gutter, ownership); });
+
+  std::vector<PlacedFace> faces;
+  faces.reserve(plan.placements.size());
+  for (const Placement& placement : plan.placements) faces.push_back(place_face(transfer, placement));
+
+  std::vector<TransferResult> rows(static_cast<std::size_t>(work.height));
+  parallel_for(work.height, [&](int row) {
+    TransferResult& result = rows[row];
+    const int y = row + work.y - region.y;
+    for (int column = 0; column < work.width; ++column) {
+      const int x = column + work.x - region.x;
+      std::uint32_t owner = ownership.owner[static_cast<std::size_t>(y) * region.width + x];
+      const bool outside = owner == 0;
+      std::array<int, 2> seed = {x, y};
+      if (outside) {
+        seed = find_nearest(x, y, gutter, ownership);
+        owner = ownership.owner[static_cast<std::size_t>(seed[1]) * region.width + seed[0]];
+      }
+      const std::uint32_t key = owner & shader::key_mask;
+      if (key == 0) continue;
+      (outside ? result.gutter_texels : result.covered_texels) += 1;
+      if (!outside && (owner & shader::foreign_bit) != 0) ++result.shared_texels;
+
+      const PlacedFace& face = faces[key - 1];
+      const auto place = face.clamped ? face.map.at(seed[0], seed[1]) : face.map.at(x, y);
+      const Pixel pixel = face.warped ? transfer.image->frame.to_pixel((*transfer.warp)({place[0], place[1]}))
+                                      : Pixel{place[0], place[1]};
+      if (keep_samples && !outside) {
+        result.samples.push_back(
+            {static_cast<std::uint32_t>(column + work.x), static_cast<std::uint32_t>(row + work.y), pixel});
+      }
+      Colour source = sample_decal(*transfer.image, pixel, face.footprint);
+      for (double& channel : source) channel *= transfer.opacity;
+      if (source[3] > 0)
+        blend_over(texture.pixel(column + work.x, row + work.y), source, transfer, texture.bits);
+    }
+  });
+
+  TransferResult total;
+  for (const TransferResult& row : rows) {
+    total.covered_texels += row.covered_texels;
+    total.gutter_texels += row.gutter_texels;
+    total.shared_texels += row.shared_texels;
+    total.samples.insert(total.samples.end(), row.samples.begin(), row.samples.end());
+  }
+  if (texture.channels < 3) texture.channels += 2;
+  return total;
+}
+
+}  // namespace applique

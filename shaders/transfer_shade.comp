@@ -1,0 +1,181 @@
+// Colours the texels that a face owns, and those of the gutter by extending the nearest face: texel -> plane or
+// image by the face's affine map, plane -> image by the warp, a filtered sample of the image, blended over the texel.
+#version 450
+#extension GL_GOOGLE_include_directive : require
+#include "transfer_types.h"
+
+layout(local_size_x = 8, local_size_y = 8) in;
+// Without it the code of the warp is compiled away.
+layout(constant_id = 0) const bool has_warp = false;
+
+layout(push_constant) uniform Constants { TransferConstants constants; };
+layout(std430, set = 0, binding = 0) readonly buffer Owners { uint owners[]; };
+layout(std430, set = 0, binding = 1) readonly buffer Nearest { uint nearest[]; };
+layout(std430, set = 0, binding = 2) readonly buffer Blocks { uint blocks[]; };
+layout(std430, set = 0, binding = 3) readonly buffer Faces { FaceMap faces[]; };
+layout(std430, set = 0, binding = 4) buffer Texels { uvec2 texels[]; };       // RGBA, 16 bits each, of the work.
+layout(std430, set = 0, binding = 5) readonly buffer Decal { uvec2 decal[]; };  // Premultiplied, half floats.
+layout(std430, set = 0, binding = 6) buffer Outcome {
+  uint covered;
+  uint gutter;
+  uint shared_texels;
+  uint padding;
+  vec2 samples[];
+};
+// Pairs as (i, j), then by stage the features' positions, then by stage the pairs' (lambda, offset).
+#ifdef LARGE_WARP
+layout(std430, set = 0, binding = 8) readonly buffer LargeWarp { vec4 warp_table[]; };
+#endif
+layout(std140, set = 0, binding = 7) uniform Tables {
+  uvec4 levels[max_levels];  // Offset in `decal`, width, height.
+#ifndef LARGE_WARP
+  vec4 warp_table[warp_table_capacity];
+#endif
+};
+
+vec2 complex_product(vec2 a, vec2 b) { return vec2(a.x * b.x - a.y * b.y, a.x * b.y + a.y * b.x); }
+
+// Design §5.2; weights as in warp.cpp.
+vec2 velocity(vec2 p, uint stage) {
+  uint positions = constants.pairs + stage * constants.features;
+  uint rates = constants.pairs + 3u * constants.steps * constants.features + stage * constants.pairs;
+  uint nearest_feature = 0u;
+  float nearest_squared = 0.0;
+  for (uint k = 0u; k < constants.features; ++k) {
+    vec2 d = p - warp_table[positions + k].xy;
+    float squared = dot(d, d);
+    if (k == 0u || squared < nearest_squared) {
+      nearest_feature = k;
+      nearest_squared = squared;
+    }
+  }
+  vec4 sum = vec4(0.0);
+  float total = 0.0;
+  for (uint q = 0u; q < constants.pairs; ++q) {
+    uvec2 pair = floatBitsToUint(warp_table[q].xy);
+    vec2 di = p - warp_table[positions + pair.x].xy;
+    vec2 dj = p - warp_table[positions + pair.y].xy;
+    float si = dot(di, di), sj = dot(dj, dj);
+    float weight = pair.x == nearest_feature   ? 1.0 / sj
+                   : pair.y == nearest_feature ? 1.0 / si
+                                               : nearest_squared / (si * sj);
+    sum += weight * warp_table[rates + q];
+    total += weight;
+  }
+  sum /= total;
+  return complex_product(sum.xy, p) + sum.zw;
+}
+
+// Classical Runge-Kutta; the four slopes of a step share one copy of the field's code.
+vec2 warp(vec2 p) {
+  float h = 1.0 / float(constants.steps);
+  for (uint step = 0u; step < constants.steps; ++step) {
+    vec2 slope = vec2(0.0), sum = vec2(0.0);
+    for (uint k = 0u; k < 4u; ++k) {
+      float reach = k == 0u ? 0.0 : k == 3u ? h : 0.5 * h;
+      slope = velocity(p + reach * slope, 3u * step + (k + 1u) / 2u);
+      sum += (k == 0u || k == 3u ? 1.0 : 2.0) * slope;
+    }
+    p += h / 6.0 * sum;
+  }
+  return p;
+}
+
+// Trilinear probes along the footprint's longer axis. The place is `pixel + rest`; transparent outside the image.
+vec4 sample_decal(ivec2 pixel, vec2 rest, vec2 axis, float level, uint probes) {
+  vec4 sum = vec4(0.0);
+  int finer = int(floor(level));
+  float blend = level - float(finer);
+  int count = int(probes) * (blend > 0.0 ? 2 : 1);
+  for (int i = 0; i < count; ++i) {
+    int probe = blend > 0.0 ? i >> 1 : i;
+    int coarser = blend > 0.0 ? i & 1 : 0;
+    uvec4 stored = levels[finer + coarser];
+    float scale = 1.0 / float(1 << (finer + coarser));
+    vec2 offset = rest + axis * ((float(probe) + 0.5) / float(probes) - 0.5);
+    vec2 place = vec2(pixel) * scale + offset * scale - 0.5;
+    if (finer + coarser == 0) place = offset - 0.5;
+    vec2 base = floor(place);
+    vec2 fraction = place - base;
+    ivec2 corner = ivec2(base) + (finer + coarser == 0 ? pixel : ivec2(0));
+    vec4 bilinear = vec4(0.0);
+    for (int k = 0; k < 4; ++k) {
+      ivec2 q = corner + ivec2(k & 1, k >> 1);
+      vec2 w = mix(1.0 - fraction, fraction, equal(ivec2(k & 1, k >> 1), ivec2(1)));
+      if (all(greaterThanEqual(q, ivec2(0))) && all(lessThan(q, ivec2(stored.yz)))) {
+        uvec2 packed = decal[stored.x + uint(q.y) * stored.y + uint(q.x)];
+        bilinear += w.x * w.y * vec4(unpackHalf2x16(packed.x), unpackHalf2x16(packed.y));
+      }
+    }
+    sum += (blend > 0.0 ? (coarser == 1 ? blend : 1.0 - blend) : 1.0) * bilinear;
+  }
+  return sum / float(probes);
+}
+
+vec3 to_linear(vec3 c) { return mix(c / 12.92, pow((c + 0.055) / 1.055, vec3(2.4)), greaterThan(c, vec3(0.04045))); }
+vec3 to_srgb(vec3 c) {
+  return mix(c * 12.92, 1.055 * pow(c, vec3(1.0 / 2.4)) - 0.055, greaterThan(c, vec3(0.0031308)));
+}
+
+// `source` is premultiplied; both colours linear; the result's colour is straight. W3C compositing, §5 to §10.
+vec4 composite(vec4 source, vec4 below) {
+  float backdrop = constants.opaque != 0u ? 1.0 : below.a;
+  vec3 mixed = backdrop * source.rgb;                                             // normal
+  if (constants.blend == 1u) mixed = backdrop * source.rgb * below.rgb;           // multiply
+  if (constants.blend == 2u) mixed += backdrop * (source.a - source.rgb) * below.rgb;  // screen
+  vec3 colour = (1.0 - backdrop) * source.rgb + mixed + (1.0 - source.a) * backdrop * below.rgb;
+  return vec4(colour / (source.a + backdrop * (1.0 - source.a)), source.a + below.a * (1.0 - source.a));
+}
+
+void main() {
+  uint block = blocks[constants.first + gl_WorkGroupID.x];
+  ivec2 texel = ivec2(gl_LocalInvocationID.xy + block_size * uvec2(block & 0xffffu, block >> 16));
+  ivec2 work = texel - constants.work_origin;
+  if (any(lessThan(work, ivec2(0))) || any(greaterThanEqual(work, constants.work_size))) return;
+
+  ivec2 seed = texel;
+  uint owner = owners[texel.y * constants.region_size.x + texel.x];
+  if (owner == 0u) {
+    int best = constants.gutter * constants.gutter + 1;
+    for (int i = 0; i <= 2 * constants.gutter; ++i) {
+      int dy = (i & 1) == 0 ? i / 2 : -(i + 1) / 2;
+      int y = texel.y + dy;
+      if (dy * dy >= best) break;
+      if (y < 0 || y >= constants.region_size.y) continue;
+      uint dx = nearest[y * constants.region_size.x + texel.x];
+      if (dx == no_texel) continue;
+      int squared = int(dx) * int(dx) + dy * dy;
+      if (squared < best) {
+        best = squared;
+        seed = ivec2(texel.x + int(dx), y);
+      }
+    }
+    uint key = owners[seed.y * constants.region_size.x + seed.x] & key_mask;
+    if (key == 0u) return;
+    atomicAdd(gutter, 1u);
+    owner = key;
+  } else {
+    if ((owner & key_mask) == 0u) return;
+    atomicAdd(covered, 1u);
+    if ((owner & foreign_bit) != 0u) atomicAdd(shared_texels, 1u);
+  }
+
+  FaceMap face = faces[(owner & key_mask) - 1u];
+  vec2 d = vec2(((face.flags & face_clamped) != 0u ? seed : texel) - face.texel);
+  vec2 place = face.value + face.dx * d.x + face.dy * d.y;
+  if (has_warp && (face.flags & face_warped) != 0u) {
+    place = constants.half_size + vec2(1.0, -1.0) * constants.pixels_per_unit * warp(place);
+  }
+  int index = work.y * constants.work_size.x + work.x;
+  if (constants.keep_samples != 0u && seed == texel) samples[index] = vec2(face.pixel) + place;
+
+  vec4 source = constants.opacity * sample_decal(face.pixel, place, face.axis, face.level, face.probes);
+  if (source.a <= 0.0) return;
+  uvec2 stored = texels[index];
+  vec4 below = vec4(unpackUnorm2x16(stored.x), unpackUnorm2x16(stored.y));
+  vec4 result = composite(source, vec4(to_linear(below.rgb), below.a));
+  result.rgb = to_srgb(clamp(result.rgb, 0.0, 1.0));
+  result.a = clamp(result.a, 0.0, 1.0);
+  uvec4 value = uvec4(result * constants.max_value + 0.5) * uint(65535.0 / constants.max_value + 0.5);
+  texels[index] = uvec2(value.x | value.y << 16, value.z | value.w << 16);
+}

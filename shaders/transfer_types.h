@@ -1,0 +1,83 @@
+// What the transfer's shaders and the C++ side share. Included by both: the layouts agree because they are one.
+// All rectangles are in texels of a tile's region: the part of the texture's plane that a tile sees.
+#ifndef APPLIQUE_TRANSFER_TYPES_H
+#define APPLIQUE_TRANSFER_TYPES_H
+
+#ifdef __cplusplus
+#include <array>
+#include <cstddef>
+#include <cstdint>
+namespace applique::shader {
+using uint = std::uint32_t;
+using ivec2 = std::array<std::int32_t, 2>;
+using vec2 = std::array<float, 2>;
+using uvec2 = std::array<std::uint32_t, 2>;
+using uvec4 = std::array<std::uint32_t, 4>;
+using vec4 = std::array<float, 4>;
+#define APPLIQUE_CONST constexpr
+#else
+#define APPLIQUE_CONST const
+#endif
+
+APPLIQUE_CONST uint block_size = 8u;            // Texels along a block's edge; the workgroup of all passes.
+APPLIQUE_CONST uint foreign_bit = 0x80000000u;  // Owner: a foreign triangle covers the texel.
+APPLIQUE_CONST uint key_mask = 0x7fffffffu;     // Owner: 1 + the placement, 0 for none.
+APPLIQUE_CONST uint max_levels = 24u;
+APPLIQUE_CONST uint warp_table_capacity = 992u;  // vec4s; with the levels just under the 16 KiB of every device.
+
+APPLIQUE_CONST uint face_warped = 1u;   // `value` is a plane point that the warp carries to the image.
+APPLIQUE_CONST uint face_clamped = 2u;  // Too thin to extend: its gutter repeats its nearest texel.
+
+APPLIQUE_CONST uint no_texel = 0x7fffffffu;  // Nearest pass: no owned texel in reach along the row.
+
+// One triangle over one block. A texel (x, y) of the block is inside where every a * x + b * y + c >= 0.
+struct RasterJob {
+  int a[3];
+  int b[3];
+  int c[3];
+  uint key;
+  uint x;  // Texel of the block's corner.
+  uint y;
+};
+
+// Where a face takes the texels: value + dx * (x - texel.x) + dy * (y - texel.y), in pixels relative to `pixel` or,
+// where warped, in the plane.
+struct FaceMap {
+  ivec2 texel;
+  ivec2 pixel;
+  vec2 value;
+  vec2 dx;
+  vec2 dy;
+  vec2 axis;  // The footprint's longer axis, pixels.
+  float level;
+  uint probes;
+  uint flags;
+  uint padding;
+};
+
+struct TransferConstants {
+  ivec2 region_size;
+  ivec2 work_origin;  // The texels that may change.
+  ivec2 work_size;
+  int gutter;
+  uint first;  // Job or block of the first workgroup.
+  float opacity;
+  uint blend;       // BlendMode.
+  uint opaque;      // Whether the texture's alpha does not show.
+  float max_value;  // 255 or 65535.
+  uint keep_samples;
+  uint steps;
+  uint features;
+  uint pairs;
+  vec2 half_size;  // Of the image, pixels.
+  float pixels_per_unit;
+};
+
+#ifdef __cplusplus
+static_assert(sizeof(RasterJob) == 48 && offsetof(RasterJob, key) == 36);
+static_assert(sizeof(FaceMap) == 64 && offsetof(FaceMap, axis) == 40 && offsetof(FaceMap, level) == 48);
+static_assert(sizeof(TransferConstants) == 76 && offsetof(TransferConstants, half_size) == 64);
+}  // namespace applique::shader
+#endif
+#undef APPLIQUE_CONST
+#endif
