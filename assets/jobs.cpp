@@ -1,0 +1,75 @@
+#include "jobs.h"
+
+#include <cmath>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "bottle.h"
+#include "bust.h"
+#include "glb_writer.h"
+#include "images.h"
+
+namespace applique::assets {
+namespace {
+
+using nlohmann::ordered_json;
+
+ordered_json feature(Pixel image, const Vec3& position) {
+  const auto round = [](double value) { return std::round(value * 1e5) / 1e5; };
+  return {{"image", {image.x, image.y}},
+          {"position", {round(position.x()), round(position.y()), round(position.z())}}};
+}
+
+Result<void> write_job(const std::filesystem::path& path, const std::string& model, const std::string& name,
+                       const ordered_json& features) {
+  ordered_json decal{{"name", name}, {"image", name + ".png"}};
+  decal["features"] = features;
+  ordered_json job{{"version", 1}, {"model", model}};
+  job["decals"] = ordered_json::array({decal});
+  const std::string text = job.dump(2) + "\n";
+  return write_file(path, std::vector<std::uint8_t>(text.begin(), text.end()));
+}
+
+}  // namespace
+
+Result<void> write_jobs(const std::filesystem::path& folder) {
+  const auto landmarks = bust_landmarks();
+  const auto at = [&](const std::string& name) {
+    for (const Landmark& landmark : landmarks)
+      if (landmark.name == name) return landmark.position;
+    APPLIQUE_ASSERT(!"a landmark of that name");
+    return Vec3();
+  };
+  const auto right = [](Pixel left) { return Pixel{1024 - left.x, left.y}; };
+  namespace place = mask_place;
+  const ordered_json mask = ordered_json::array({
+      feature(place::forehead, at("forehead")),
+      feature(place::nose_root, at("nose_root")),
+      feature(place::nose_tip, at("nose_tip")),
+      feature(place::left_eye_inner, at("left_eye_inner")),
+      feature(place::left_eye_outer, at("left_eye_outer")),
+      feature(right(place::left_eye_inner), at("right_eye_inner")),
+      feature(right(place::left_eye_outer), at("right_eye_outer")),
+      feature(place::left_mouth_corner, at("left_mouth_corner")),
+      feature(right(place::left_mouth_corner), at("right_mouth_corner")),
+      feature(place::chin, at("chin")),
+  });
+  APPLIQUE_CHECK(write_job(folder / "bust-mask.json", "bust.glb", "mask", mask));
+
+  const ordered_json emblem = ordered_json::array({
+      feature({384, 60}, at("emblem_top")),
+      feature({384, 692}, at("emblem_bottom")),
+  });
+  APPLIQUE_CHECK(write_job(folder / "bust-emblem.json", "bust.glb", "emblem", emblem));
+
+  // The label goes on without stretch: 1024 pixels are 1.76 units along the body.
+  constexpr double scale = 1.76 / 1024;
+  constexpr double middle = 0.5 * (bottle_label_low + bottle_label_high);
+  ordered_json label = ordered_json::array();
+  for (const Pixel p : {Pixel{112, 106}, Pixel{912, 106}, Pixel{512, 256}, Pixel{112, 406}, Pixel{912, 406}})
+    label.push_back(feature(p, bottle_point(scale * (p.x - 512), middle - scale * (p.y - 256))));
+  return write_job(folder / "bottle-label.json", "bottle.glb", "label", label);
+}
+
+}  // namespace applique::assets

@@ -1,0 +1,81 @@
+#include "models.h"
+
+#include <algorithm>
+
+#include "atlas.h"
+#include "bottle.h"
+#include "bust.h"
+#include "parallel.h"
+#include "polygonise.h"
+
+namespace applique::assets {
+namespace {
+
+constexpr int gutter = 16;  // texels between charts
+
+Colour blend(const Colour& a, const Colour& b, double t) {
+  return a + std::clamp(t, 0.0, 1.0) * (b - a);
+}
+
+/// Warm marble: clouds, thin veins where a warped noise crosses zero, and brown dust in the cavities.
+Colour marble(const Vec3& position, const Vec3& normal, double open) {
+  const Vec3 warped = position + 0.35 * Vec3(fractal_noise(1.3 * position, 3),
+                                             fractal_noise(1.3 * position + Vec3(7, 3, 1), 3),
+                                             fractal_noise(1.3 * position + Vec3(2, 9, 4), 3));
+  const double clouds = fractal_noise(1.1 * warped, 4);
+  const double vein = std::max(0.0, 1 - 16 * std::abs(noise(0.9 * warped)));
+  const double fine_vein = std::max(0.0, 1 - 22 * std::abs(noise(2.1 * warped + Vec3(4, 4, 4))));
+  const double grain = noise(55 * position);
+  Colour c = blend(Colour(0.905, 0.875, 0.83), Colour(0.83, 0.79, 0.74), 0.5 + 0.7 * clouds);
+  c = blend(c, Colour(0.60, 0.56, 0.53), 0.30 * vein * vein + 0.16 * fine_vein * fine_vein);
+  c *= 1 + 0.012 * grain;
+  // Dust settles where the surface is hidden, and a little where it looks up.
+  c = blend(c, Colour(0.44, 0.35, 0.28), 0.95 * (1 - open));
+  return blend(c, Colour(0.80, 0.74, 0.66), 0.18 * std::max(normal.y(), 0.0));
+}
+
+Colour glass(const Vec3& position, const Vec3&, double) {
+  if (position.y() > bottle_cork_height) {
+    const double grain = fractal_noise(Vec3(14, 26, 14).cwiseProduct(position), 3);
+    return blend(Colour(0.74, 0.58, 0.40), Colour(0.52, 0.37, 0.23), 0.4 + 0.9 * grain);
+  }
+  const double streak = fractal_noise(Vec3(1.6, 0.5, 1.6).cwiseProduct(position), 3);
+  const double depth = std::clamp(position.y() / 3.2, 0.0, 1.0);
+  return blend(Colour(0.07, 0.20, 0.12), Colour(0.13, 0.33, 0.19), 0.35 + 0.4 * depth + 0.25 * streak);
+}
+
+}  // namespace
+
+Mesh make_bust_mesh() {
+  PolygoniseOptions options;
+  options.low = Vec3(-1.9, -0.1, -1.4);
+  options.high = Vec3(1.9, 5.1, 1.3);
+  options.focus = head_to_scene(Vec3(0, -0.25, 0.8));
+  options.focus_radius = 0.4;
+  options.fine = 0.024;
+  options.coarse = 0.115;
+  return polygonise(bust_distance, options);
+}
+
+Result<Model> make_bust(int texture_size) {
+  Model model;
+  const Mesh mesh = make_bust_mesh();
+  APPLIQUE_TRY(model.mesh, unwrap(mesh, segment(mesh, bust_chart), texture_size, gutter));
+  std::vector<double> open(model.mesh.positions.size());
+  parallel_for(static_cast<int>(open.size() + 255) / 256, [&](int block) {
+    for (std::size_t v = 256UL * block; v < std::min<std::size_t>(open.size(), 256UL * (block + 1)); ++v)
+      open[v] = openness(bust_distance, model.mesh.positions[v], model.mesh.normals[v], 0.35);
+  });
+  model.texture = paint_texture(model.mesh, open, texture_size, marble);
+  return model;
+}
+
+Result<Model> make_bottle(int texture_size) {
+  Model model;
+  const Mesh mesh = bottle_mesh();
+  APPLIQUE_TRY(model.mesh, unwrap(mesh, segment(mesh, bottle_chart), texture_size, gutter));
+  model.texture = paint_texture(model.mesh, {}, texture_size, glass);
+  return model;
+}
+
+}  // namespace applique::assets
