@@ -85,12 +85,12 @@ Result<void> check_input(const SurfaceMesh& surface, const DecalInput& input,
   std::vector<std::uint32_t> component;
   for (std::size_t k = 0; k < input.features.size(); ++k) {
     const std::uint32_t c = surface.component[surface.faces[input.features[k].surface.face][0]];
-    const auto found = std::find(component.begin(), component.end(), c);
-    if (found == component.end()) {
+    const auto part = static_cast<std::size_t>(std::find(component.begin(), component.end(), c) - component.begin());
+    if (part == component.size()) {
       component.push_back(c);
       parts.emplace_back();
     }
-    parts[static_cast<std::size_t>(found - component.begin())].push_back(feature_name(input, k));
+    parts[part].push_back(feature_name(input, k));
   }
   if (parts.size() > 1) {
     std::string text;
