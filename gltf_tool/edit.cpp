@@ -1,0 +1,257 @@
+#include "edit.h"
+
+#include <algorithm>
+#include <array>
+#include <map>
+#include <optional>
+#include <set>
+#include <tuple>
+
+#include <fmt/format.h>
+
+#include "binary_edit.h"
+
+namespace applique {
+namespace {
+
+using Json = Document::Json;
+
+/// Extensions by which a texture names another image than its own source.
+constexpr std::array<const char*, 3> source_extensions = {"EXT_texture_webp", "KHR_texture_basisu",
+                                                          "MSFT_texture_dds"};
+
+/// Gives every touched node a mesh of its own. Returns the mesh of each part.
+std::vector<std::size_t> isolate_meshes(Document& document, std::span<const PartKey> parts) {
+  std::map<std::size_t, std::vector<std::size_t>> users;  // mesh -> nodes
+  auto& nodes = document.json["nodes"];
+  for (std::size_t n = 0; n < nodes.size(); ++n)
+    if (const auto mesh = index_of(nodes[n], "mesh")) users[*mesh].push_back(n);
+  std::set<std::size_t> touched;
+  for (const PartKey& part : parts) touched.insert(part.node);
+  std::map<std::size_t, std::size_t> mesh_of;  // touched node -> its mesh
+  for (const auto& [mesh, sharers] : users) {
+    // The original stays with the untouched nodes; where there are none, with the first.
+    bool original_taken =
+        std::any_of(sharers.begin(), sharers.end(), [&](std::size_t n) { return !touched.contains(n); });
+    for (const std::size_t node : sharers) {
+      if (!touched.contains(node)) continue;
+      mesh_of[node] = mesh;
+      if (std::exchange(original_taken, true)) {
+        auto& meshes = document.json["meshes"];
+        Json copy = meshes[mesh];
+        mesh_of[node] = meshes.size();
+        meshes.push_back(std::move(copy));
+        nodes[node]["mesh"] = mesh_of[node];
+      }
+    }
+  }
+  std::vector<std::size_t> result;
+  for (const PartKey& part : parts) result.push_back(mesh_of.at(part.node));
+  return result;
+}
+
+/// For each part, which of its mesh's touched instances it belongs to: 0 for the first node, and so on.
+std::vector<std::size_t> instance_ranks(std::span<const PartKey> parts) {
+  std::map<std::size_t, std::set<std::size_t>> nodes;  // mesh -> touched nodes
+  for (const PartKey& part : parts) nodes[part.mesh].insert(part.node);
+  std::vector<std::size_t> ranks;
+  for (const PartKey& part : parts) {
+    const auto& set = nodes[part.mesh];
+    ranks.push_back(static_cast<std::size_t>(std::distance(set.begin(), set.find(part.node))));
+  }
+  return ranks;
+}
+
+/// How often the document's meshes use a material, by primitives and by variants.
+std::map<std::size_t, std::size_t> count_material_uses(const Document& document) {
+  std::map<std::size_t, std::size_t> uses;
+  for (const auto& mesh : document.json["meshes"])
+    for (const auto& primitive : mesh["primitives"]) {
+      if (const auto material = index_of(primitive, "material")) ++uses[*material];
+      const auto* mappings = find(primitive, {"extensions", "KHR_materials_variants", "mappings"});
+      if (mappings == nullptr || !mappings->is_array()) continue;
+      for (const auto& mapping : *mappings)
+        if (const auto material = index_of(mapping, "material")) ++uses[*material];
+    }
+  return uses;
+}
+
+/// Calls `function` with every texture reference in a material: the objects under keys that end in "Texture".
+template <class Function>
+void each_texture_reference(const Json& object, Function function) {
+  if (!object.is_object()) return;
+  for (const auto& item : object.items()) {
+    if (item.key().ends_with("Texture") && index_of(item.value(), "index")) function(item.value());
+    each_texture_reference(item.value(), function);
+  }
+}
+
+std::size_t count_texture_uses(const Document& document, std::size_t texture) {
+  std::size_t uses = 0;
+  for (const auto& material : document.json["materials"])
+    each_texture_reference(
+        material, [&](const Json& reference) { uses += index_of(reference, "index") == texture ? 1 : 0; });
+  return uses;
+}
+
+/// Calls `function` with every object of a texture that has a "source".
+template <class Function>
+void each_source(Json& texture, Function function) {
+  if (texture.contains("source")) function(texture);
+  for (const char* extension : source_extensions)
+    if (find(texture, {"extensions", extension, "source"}) != nullptr)
+      function(texture["extensions"][extension]);
+}
+
+std::size_t count_image_uses(Document& document, std::size_t image) {
+  std::size_t uses = 0;
+  for (auto& texture : document.json["textures"])
+    each_source(texture, [&](const Json& object) { uses += index_of(object, "source") == image ? 1 : 0; });
+  return uses;
+}
+
+std::size_t count_view_uses(const Document& document, std::size_t view) {
+  std::size_t uses = 0;
+  const auto count = [&](const Json& object, auto& self) -> void {
+    if (object.is_object() && index_of(object, "bufferView") == view) ++uses;
+    if (object.is_structured())
+      for (const auto& member : object) self(member, self);
+  };
+  count(document.json, count);
+  return uses;
+}
+
+/// Takes an image that nothing uses out of the list, unless something here unknown may count images.
+void remove_image(Document& document, std::size_t image) {
+  if (find(document.json, {"extensions", "EXT_lights_image_based"}) != nullptr) return;
+  document.json["images"].erase(image);
+  for (auto& texture : document.json["textures"])
+    each_source(texture, [&](Json& object) {
+      const std::size_t source = object["source"].get<std::size_t>();
+      if (source > image) object["source"] = source - 1;
+    });
+}
+
+/// Replaces an image's bytes and keeps its other members.
+void replace_image(Document& document, std::size_t image, std::span<const std::uint8_t> png) {
+  auto& entry = document.json["images"][image];
+  const auto view = index_of(entry, "bufferView");
+  if (view && count_view_uses(document, *view) == 1) {
+    replace_buffer_view(document, *view, png);
+    document.json["images"][image]["mimeType"] = "image/png";
+    return;
+  }
+  const auto* name = find(entry, {"name"});
+  const std::size_t added = add_image(
+      document, png, name != nullptr && name->is_string() ? name->get<std::string>() : "base_colour");
+  auto& images = document.json["images"];
+  Json replacement = std::move(images[added]);
+  images.erase(added);
+  for (const char* key : {"name", "extras", "extensions"}) {
+    replacement.erase(key);
+    if (images[image].contains(key)) replacement[key] = images[image][key];
+  }
+  images[image] = std::move(replacement);
+}
+
+/// The texture's only source becomes `png`: in place of an image that it alone uses, else as a new image.
+void set_texture_image(Document& document, std::size_t texture, std::span<const std::uint8_t> png) {
+  std::vector<std::size_t> own;
+  auto& entry = document.json["textures"][texture];
+  each_source(entry, [&](const Json& object) {
+    const std::size_t image = object["source"].get<std::size_t>();
+    if (std::find(own.begin(), own.end(), image) == own.end()) own.push_back(image);
+  });
+  if (entry.contains("extensions")) {
+    for (const char* extension : source_extensions) entry["extensions"].erase(extension);
+    if (entry["extensions"].empty()) entry.erase("extensions");
+  }
+  entry.erase("source");
+  std::erase_if(own, [&](std::size_t image) { return count_image_uses(document, image) != 0; });
+  std::sort(own.begin(), own.end());
+  if (own.empty()) {
+    const std::size_t image = add_image(document, png, "base_colour");
+    document.json["textures"][texture]["source"] = image;
+    return;
+  }
+  replace_image(document, own.front(), png);
+  document.json["textures"][texture]["source"] = own.front();
+  for (std::size_t i = own.size(); i-- > 1;) remove_image(document, own[i]);
+}
+
+}  // namespace
+
+std::vector<std::size_t> isolate_materials(Document& document, std::span<const PartKey> parts) {
+  const std::vector<std::size_t> meshes = isolate_meshes(document, parts);
+  const std::vector<std::size_t> ranks = instance_ranks(parts);
+  // Parts of one group keep sharing one material: (original material or none, instance rank).
+  using Group = std::pair<std::optional<std::size_t>, std::size_t>;
+  std::map<Group, std::vector<std::size_t>> groups;
+  const auto primitive_of = [&](std::size_t i) -> Json& {
+    return document.json["meshes"][meshes[i]]["primitives"][parts[i].primitive];
+  };
+  for (std::size_t i = 0; i < parts.size(); ++i)
+    groups[{index_of(primitive_of(i), "material"), ranks[i]}].push_back(i);
+
+  const auto uses = count_material_uses(document);
+  std::map<std::size_t, std::size_t> touched_uses;
+  for (const auto& [group, members] : groups)
+    if (group.first) touched_uses[*group.first] += members.size();
+  std::set<std::size_t> taken;
+  std::vector<std::size_t> result(parts.size());
+  for (const auto& [group, members] : groups) {
+    auto& materials = document.json["materials"];
+    std::size_t material = group.first.value_or(0);
+    if (!group.first) {
+      material = materials.size();
+      materials.push_back({{"pbrMetallicRoughness", Json::object()}});
+    } else if (uses.at(material) != touched_uses.at(material) || !taken.insert(material).second) {
+      Json copy = materials[material];
+      material = materials.size();
+      materials.push_back(std::move(copy));
+    }
+    for (const std::size_t i : members) {
+      primitive_of(i)["material"] = material;
+      result[i] = material;
+    }
+  }
+  return result;
+}
+
+std::size_t add_image(Document& document, std::span<const std::uint8_t> png, const std::string& name) {
+  Json image = {{"mimeType", "image/png"}, {"name", name}};
+  if (document.is_glb) {
+    image["bufferView"] = add_buffer_view(document, png);
+  } else {
+    std::string stem = name.empty() ? "image" : name;
+    for (char& c : stem)
+      if (std::string_view("/\\:*?\"<>|%").find(c) != std::string_view::npos) c = '_';
+    std::string uri = stem + ".png";
+    for (int i = 2; document.new_files.contains(uri); ++i) uri = fmt::format("{}_{}.png", stem, i);
+    image["uri"] = uri;
+    document.new_files[uri].assign(png.begin(), png.end());
+  }
+  auto& images = document.json["images"];
+  images.push_back(std::move(image));
+  return images.size() - 1;
+}
+
+void set_base_colour_image(Document& document, std::size_t material, std::span<const std::uint8_t> png) {
+  auto& textures = document.json["textures"];
+  auto& pbr = document.json["materials"][material]["pbrMetallicRoughness"];
+  if (!pbr.contains("baseColorTexture")) {
+    pbr["baseColorTexture"] = {{"index", textures.size()}};
+    pbr.erase("baseColorFactor");
+    textures.push_back(Json::object());
+  }
+  std::size_t texture = pbr["baseColorTexture"]["index"].get<std::size_t>();
+  if (count_texture_uses(document, texture) > 1) {
+    Json copy = textures[texture];
+    texture = textures.size();
+    textures.push_back(std::move(copy));
+    pbr["baseColorTexture"]["index"] = texture;
+  }
+  set_texture_image(document, texture, png);
+}
+
+}  // namespace applique

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "document.h"
+
+namespace applique {
+
+/// A primitive of a mesh where one node shows it.
+struct PartKey {
+  std::size_t node = 0;
+  std::size_t mesh = 0;
+  std::size_t primitive = 0;
+};
+
+/// Makes the material of each given part (all that a decal touches) one that nothing else uses, and returns
+/// its index, by part. A mesh that other nodes show too is copied for the node (accessors stay shared); a
+/// material that other primitives, or variants, use is copied; a part without a material gets one. Parts that
+/// shared a material go on sharing it, unless they are instances of one mesh, whose texture coordinates would
+/// coincide. The document must have passed check_document; the parts are distinct and exist.
+std::vector<std::size_t> isolate_materials(Document& document, std::span<const PartKey> parts);
+
+/// Shows an image (PNG bytes) as the base colour of an isolated material. The texture is copied first when
+/// other materials or slots use it; its sampler, and the material's texture coordinates, stay. A material
+/// without a base-colour texture gets one over TEXCOORD_0, and its baseColorFactor becomes 1, so the image
+/// must have it in its colours. The replaced image's bytes go where nothing else uses them.
+void set_base_colour_image(Document& document, std::size_t material, std::span<const std::uint8_t> png);
+
+/// Adds an image of PNG bytes: in the chunk of a GLB, else as a new file named after `name`. Returns its
+/// index.
+std::size_t add_image(Document& document, std::span<const std::uint8_t> png, const std::string& name);
+
+}  // namespace applique

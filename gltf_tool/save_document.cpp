@@ -1,0 +1,244 @@
+#include "save_document.h"
+
+#include <algorithm>
+#include <cctype>
+#include <cstring>
+#include <limits>
+#include <map>
+#include <set>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "binary_edit.h"
+#include "output_file.h"
+#include "uri.h"
+
+namespace applique {
+namespace {
+
+using Json = Document::Json;
+namespace fs = std::filesystem;
+
+struct SideFile {
+  fs::path path;  ///< Relative to the output's folder.
+  std::vector<std::uint8_t> bytes;
+};
+
+/// The media type of an image that glTF can embed, by its first bytes; "" for another.
+std::string media_type(std::span<const std::uint8_t> bytes) {
+  const auto starts_with = [&](std::string_view magic, std::size_t at = 0) {
+    return bytes.size() >= at + magic.size() &&
+           std::memcmp(bytes.data() + at, magic.data(), magic.size()) == 0;
+  };
+  if (starts_with("\x89PNG\r\n\x1a\n")) return "image/png";
+  if (starts_with("\xff\xd8\xff")) return "image/jpeg";
+  if (starts_with("RIFF") && starts_with("WEBP", 8)) return "image/webp";
+  if (starts_with("\xabKTX 20\xbb\r\n\x1a\n")) return "image/ktx2";
+  return "";
+}
+
+void put_u32(std::vector<std::uint8_t>& out, std::size_t value) {
+  for (int shift = 0; shift < 32; shift += 8) out.push_back(static_cast<std::uint8_t>(value >> shift));
+}
+
+void put_chunk(std::vector<std::uint8_t>& out, std::uint32_t type, std::span<const std::uint8_t> bytes,
+               std::uint8_t padding) {
+  put_u32(out, (bytes.size() + 3) / 4 * 4);
+  put_u32(out, type);
+  out.insert(out.end(), bytes.begin(), bytes.end());
+  out.resize((out.size() + 3) / 4 * 4, padding);
+}
+
+Result<std::vector<std::uint8_t>> to_glb(const Document& document, const fs::path& path) {
+  const std::string text = document.json.dump(-1, ' ', false, Json::error_handler_t::replace);
+  std::vector<std::uint8_t> out;
+  out.reserve(text.size() + document.binary_chunk.size() + 64);
+  put_u32(out, 0x46546C67);
+  put_u32(out, 2);
+  put_u32(out, 0);
+  put_chunk(out, 0x4E4F534A, {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()}, ' ');
+  if (!document.binary_chunk.empty()) put_chunk(out, 0x004E4942, document.binary_chunk, 0);
+  for (const auto& chunk : document.other_chunks) put_chunk(out, chunk.type, chunk.bytes, 0);
+  if (out.size() > std::numeric_limits<std::uint32_t>::max())
+    return fail(ErrorCode::output_unwritable,
+                fmt::format("{}: cannot be written: a GLB holds at most 4 GiB; write a .gltf instead",
+                            path.string()));
+  std::vector<std::uint8_t> length;
+  put_u32(length, out.size());
+  std::copy(length.begin(), length.end(), out.begin() + 8);
+  return out;
+}
+
+/// Moves all buffers that have bytes into the chunk, as buffer 0.
+Result<void> pack_buffers(Document& document) {
+  if (count_of(document, "buffers") == 0) return {};
+  APPLIQUE_TRY(const Buffers buffers, read_buffers(document));
+  std::vector<std::uint8_t> chunk;
+  Json entries = Json::array({Json::object()});
+  std::vector<std::pair<std::size_t, std::size_t>> place;  // buffer -> (new buffer, offset)
+  for (std::size_t i = 0; i < buffers.bytes.size(); ++i) {
+    Json entry = document.json["buffers"][i];
+    if (buffers.bytes[i].empty()) {
+      place.emplace_back(entries.size(), 0);
+      entries.push_back(std::move(entry));
+      continue;
+    }
+    chunk.resize((chunk.size() + 3) / 4 * 4);
+    place.emplace_back(0, chunk.size());
+    chunk.insert(chunk.end(), buffers.bytes[i].begin(), buffers.bytes[i].end());
+    entry.erase("uri");
+    entries[0].insert(entry.begin(), entry.end());
+  }
+  if (chunk.empty()) return {};
+  entries[0]["byteLength"] = chunk.size();
+  const auto move = [&](Json& range) {
+    const auto [buffer, offset] = place[range["buffer"].get<std::size_t>()];
+    range["buffer"] = buffer;
+    if (offset != 0) range["byteOffset"] = index_of(range, "byteOffset").value_or(0) + offset;
+  };
+  for (std::size_t i = 0; i < count_of(document, "bufferViews"); ++i) {
+    auto& view = document.json["bufferViews"][i];
+    move(view);
+    for (const char* extension : {"EXT_meshopt_compression", "KHR_meshopt_compression"})
+      if (find(view, {"extensions", extension}) != nullptr) move(view["extensions"][extension]);
+  }
+  document.json["buffers"] = std::move(entries);
+  document.binary_chunk = std::move(chunk);
+  document.chunk_buffer = 0;
+  return {};
+}
+
+/// Moves the images that can be read into the chunk.
+void pack_images(Document& document) {
+  for (std::size_t i = 0; i < count_of(document, "images"); ++i) {
+    const auto* uri = find(document.json["images"][i], {"uri"});
+    if (uri == nullptr) continue;
+    const auto bytes = read_uri(document, uri->get<std::string>(), "image");
+    const std::string type = bytes ? media_type(*bytes) : "";
+    if (type.empty()) continue;
+    const std::size_t view = add_buffer_view(document, *bytes);
+    auto& image = document.json["images"][i];
+    image.erase("uri");
+    if (!image.contains("mimeType")) image["mimeType"] = type;
+    image["bufferView"] = view;
+  }
+}
+
+/// The files behind relative URIs, which get names that fit the output's folder.
+class SideFiles {
+ public:
+  SideFiles(Document& document, const fs::path& path) : document_(document), stem_(path.stem().string()) {
+    std::error_code error;
+    const fs::path folder = path.has_parent_path() ? path.parent_path() : ".";
+    const fs::path source = document.folder.empty() ? "." : document.folder;
+    same_folder_ = fs::equivalent(folder, source, error);
+    for (const char* collection : {"buffers", "images"})
+      for (std::size_t i = 0; i < count_of(document, collection); ++i)
+        if (const auto* uri = find(document.json[collection][i], {"uri"}))
+          used_.insert(uri->get<std::string>());
+  }
+
+  Result<std::vector<SideFile>> collect() {
+    for (const char* collection : {"buffers", "images"})
+      for (std::size_t i = 0; i < count_of(document_, collection); ++i)
+        APPLIQUE_CHECK(take(document_.json[collection][i], std::string_view(collection) == "buffers"));
+    return std::move(files_);
+  }
+
+  void name_chunk() {
+    auto& buffer = document_.json["buffers"][*document_.chunk_buffer];
+    const std::string name = free_name(stem_, ".bin");
+    buffer["uri"] = percent_encode(name);
+    document_.binary_chunk.resize(buffer["byteLength"].get<std::size_t>());
+    files_.push_back({name, std::move(document_.binary_chunk)});
+    named_.insert(percent_encode(name));
+  }
+
+ private:
+  Result<void> take(Json& entry, bool required) {
+    const auto* member = find(entry, {"uri"});
+    if (member == nullptr) return {};
+    const std::string uri = member->get<std::string>();
+    if (is_data_uri(uri) || !is_relative_uri(uri) || named_.contains(uri)) return {};
+    const bool is_new = document_.new_files.contains(uri);
+    if (!is_new && same_folder_) return {};
+    const auto [renamed, first] = renamed_.try_emplace(uri, uri);
+    if (!first) {
+      entry["uri"] = renamed->second;
+      return {};
+    }
+    auto bytes = read_uri(document_, uri, "side file");
+    if (!bytes) {
+      if (required) return tl::unexpected<Error>(bytes.error());
+      return {};
+    }
+    fs::path name = is_new ? fs::path(stem_ + "_" + uri) : fs::path(percent_decode(uri)).lexically_normal();
+    if (is_new || *name.begin() == "..") {
+      name = free_name(name.stem().string(), name.extension().string());
+      renamed->second = percent_encode(name.string());
+      entry["uri"] = renamed->second;
+    }
+    files_.push_back({name, std::move(*bytes)});
+    return {};
+  }
+
+  std::string free_name(const std::string& stem, const std::string& extension) {
+    std::string name = stem + extension;
+    for (int i = 2; used_.contains(percent_encode(name)) || used_.contains(name); ++i)
+      name = fmt::format("{}_{}{}", stem, i, extension);
+    used_.insert(percent_encode(name));
+    return name;
+  }
+
+  Document& document_;
+  std::string stem_;
+  bool same_folder_ = false;
+  std::set<std::string> used_;                  ///< URIs that are taken.
+  std::set<std::string> named_;                 ///< URIs that are final.
+  std::map<std::string, std::string> renamed_;  ///< URI before -> URI in the output.
+  std::vector<SideFile> files_;
+};
+
+Result<void> write_side_files(const std::vector<SideFile>& files, const fs::path& folder) {
+  for (const SideFile& file : files) {
+    const fs::path path = folder / file.path;
+    std::error_code error;
+    if (path.has_parent_path()) fs::create_directories(path.parent_path(), error);
+    if (error)
+      return fail(ErrorCode::output_unwritable,
+                  fmt::format("{}: its folder cannot be made: {}", path.string(), error.message()));
+    APPLIQUE_CHECK(write_file(path, std::span<const std::uint8_t>(file.bytes)));
+  }
+  return {};
+}
+
+}  // namespace
+
+Result<void> save_document(const Document& document, const fs::path& path) {
+  std::string extension = path.extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  if (extension != ".glb" && extension != ".gltf")
+    return fail(ErrorCode::output_unwritable,
+                fmt::format("{}: the name of the output ends in .glb or .gltf, which says its format",
+                            path.string()));
+  APPLIQUE_CHECK(check_writable(path));
+  Document output = document;
+  const bool as_glb = extension == ".glb";
+  if (as_glb && (!output.is_glb || output.chunk_buffer.value_or(0) != 0)) {
+    APPLIQUE_CHECK(pack_buffers(output));
+    pack_images(output);
+  }
+  SideFiles side_files(output, path);
+  if (!as_glb && output.chunk_buffer) side_files.name_chunk();
+  APPLIQUE_TRY(const auto files, side_files.collect());
+  APPLIQUE_CHECK(write_side_files(files, path.parent_path()));
+  if (as_glb) {
+    APPLIQUE_TRY(const auto bytes, to_glb(output, path));
+    return write_file(path, std::span<const std::uint8_t>(bytes));
+  }
+  return write_file(path, output.json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
+}
+
+}  // namespace applique
