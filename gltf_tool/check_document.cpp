@@ -163,7 +163,7 @@ class Checker {
       if (!fallback) problem(where, fmt::format("{} is missing", key));
       return fallback.value_or(0);
     }
-    if (!value->is_number_unsigned() || value->get<std::size_t>() < minimum) {
+    if (as_index(*value).value_or(0) < minimum || !as_index(*value)) {
       problem(where,
               fmt::format("{} is {}, expected an integer of at least {}", key, shown(*value), minimum));
       return 0;
@@ -183,7 +183,8 @@ class Checker {
   }
 
   bool is_index(const Json& value, const char* collection) const {
-    return value.is_number_unsigned() && value.get<std::size_t>() < count_of(document_, collection);
+    const auto index = as_index(value);
+    return index && *index < count_of(document_, collection);
   }
 
   void reference(const Json& object, const char* key, const char* collection, const std::string& where,

@@ -98,9 +98,8 @@ Result<DracoPrimitive> decode_draco(const Document& document, const Buffers& buf
     if (!accessor)
       return invalid(fmt::format("names the attribute {}, which the primitive does not have", name));
     const auto& entry = document.json["accessors"][*accessor];
-    const auto* attribute = item.value().is_number_unsigned()
-                                ? mesh.GetAttributeByUniqueId(item.value().get<std::uint32_t>())
-                                : nullptr;
+    const auto* attribute =
+        as_index(item.value()) ? mesh.GetAttributeByUniqueId(item.value().get<std::uint32_t>()) : nullptr;
     if (attribute == nullptr)
       return invalid(fmt::format("has no attribute {} for {}", item.value().dump(), name));
     if (attribute->num_components() != component_count(entry["type"].get<std::string>()) ||

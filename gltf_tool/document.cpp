@@ -139,10 +139,16 @@ std::size_t count_of(const Document& document, const char* collection) {
   return items != nullptr && items->is_array() ? items->size() : 0;
 }
 
+std::optional<std::size_t> as_index(const Document::Json& value) {
+  // Parsed numbers are unsigned; those that code put there may be signed.
+  if (!value.is_number_integer() || (!value.is_number_unsigned() && value.get<std::int64_t>() < 0))
+    return std::nullopt;
+  return value.get<std::size_t>();
+}
+
 std::optional<std::size_t> index_of(const Document::Json& object, const char* key) {
   const auto* value = find(object, {key});
-  if (value == nullptr || !value->is_number_unsigned()) return std::nullopt;
-  return value->get<std::size_t>();
+  return value != nullptr ? as_index(*value) : std::nullopt;
 }
 
 const Document::Json* find(const Document::Json& object, std::initializer_list<const char*> keys) {

@@ -72,6 +72,9 @@ Result<std::vector<std::uint8_t>> read_image_bytes(const Document& document, std
 /// The number of objects in a root collection: count_of(document, "nodes"); 0 if it is missing.
 std::size_t count_of(const Document& document, const char* collection);
 
+/// A non-negative integer; none when the value is anything else.
+std::optional<std::size_t> as_index(const Document::Json& value);
+
 /// A non-negative integer member; none when it is missing or anything else.
 std::optional<std::size_t> index_of(const Document::Json& object, const char* key);
 

@@ -89,8 +89,9 @@ void each_texture_reference(const Json& object, Function function) {
 std::size_t count_texture_uses(const Document& document, std::size_t texture) {
   std::size_t uses = 0;
   for (const auto& material : document.json["materials"])
-    each_texture_reference(
-        material, [&](const Json& reference) { uses += index_of(reference, "index") == texture ? 1 : 0; });
+    each_texture_reference(material, [&](const Json& reference) {
+      if (index_of(reference, "index") == texture) ++uses;
+    });
   return uses;
 }
 
@@ -103,11 +104,15 @@ void each_source(Json& texture, Function function) {
       function(texture["extensions"][extension]);
 }
 
-std::size_t count_image_uses(Document& document, std::size_t image) {
-  std::size_t uses = 0;
-  for (auto& texture : document.json["textures"])
-    each_source(texture, [&](const Json& object) { uses += index_of(object, "source") == image ? 1 : 0; });
-  return uses;
+/// Whether a texture other than `texture` shows the image.
+bool is_shown_elsewhere(Document& document, std::size_t image, std::size_t texture) {
+  bool shown = false;
+  auto& textures = document.json["textures"];
+  for (std::size_t i = 0; i < textures.size(); ++i)
+    if (i != texture)
+      each_source(textures[i],
+                  [&](const Json& object) { shown = shown || index_of(object, "source") == image; });
+  return shown;
 }
 
 std::size_t count_view_uses(const Document& document, std::size_t view) {
@@ -166,8 +171,7 @@ void set_texture_image(Document& document, std::size_t texture, std::span<const 
     for (const char* extension : source_extensions) entry["extensions"].erase(extension);
     if (entry["extensions"].empty()) entry.erase("extensions");
   }
-  entry.erase("source");
-  std::erase_if(own, [&](std::size_t image) { return count_image_uses(document, image) != 0; });
+  std::erase_if(own, [&](std::size_t image) { return is_shown_elsewhere(document, image, texture); });
   std::sort(own.begin(), own.end());
   if (own.empty()) {
     const std::size_t image = add_image(document, png, "base_colour");

@@ -1,6 +1,7 @@
 #include "overlay.h"
 
 #include <algorithm>
+#include <limits>
 
 #include "binary_edit.h"
 #include "edit.h"
@@ -24,20 +25,25 @@ std::size_t add_to(Document& document, const char* collection, Json entry) {
   return items.size() - 1;
 }
 
-template <std::size_t N>
-std::size_t add_attribute(Document& document, const std::vector<std::array<float, N>>& items, bool bounds) {
-  Json accessor = {{"bufferView", add_buffer_view(document, as_bytes_of(items), array_buffer)},
+/// `items` as floats, with min and max where asked for.
+template <std::size_t N, class Item>
+std::size_t add_attribute(Document& document, const std::vector<Item>& items, bool bounds) {
+  std::vector<std::array<float, N>> values(items.size());
+  std::array<float, N> lower;
+  std::array<float, N> upper;
+  lower.fill(std::numeric_limits<float>::max());
+  upper.fill(std::numeric_limits<float>::lowest());
+  for (std::size_t i = 0; i < items.size(); ++i)
+    for (std::size_t c = 0; c < N; ++c) {
+      values[i][c] = static_cast<float>(items[i][c]);
+      lower[c] = std::min(lower[c], values[i][c]);
+      upper[c] = std::max(upper[c], values[i][c]);
+    }
+  Json accessor = {{"bufferView", add_buffer_view(document, as_bytes_of(values), array_buffer)},
                    {"componentType", 5126},
                    {"count", items.size()},
                    {"type", N == 2 ? "VEC2" : "VEC3"}};
   if (bounds) {
-    auto lower = items.front();
-    auto upper = items.front();
-    for (const auto& item : items)
-      for (std::size_t c = 0; c < N; ++c) {
-        lower[c] = std::min(lower[c], item[c]);
-        upper[c] = std::max(upper[c], item[c]);
-      }
     accessor["min"] = std::vector<double>(lower.begin(), lower.end());
     accessor["max"] = std::vector<double>(upper.begin(), upper.end());
   }
@@ -63,14 +69,12 @@ std::size_t add_indices(Document& document, const OverlayMesh& overlay) {
                  {"type", "SCALAR"}});
 }
 
-std::size_t add_material(Document& document, const std::string& name, std::span<const std::uint8_t> png,
-                         double opacity) {
+std::size_t add_material(Document& document, const std::string& name, std::span<const std::uint8_t> png) {
   const std::size_t image = add_image(document, png, name);
   const std::size_t sampler = add_to(
       document, "samplers", {{"magFilter", 9729}, {"minFilter", 9987}, {"wrapS", 33071}, {"wrapT", 33071}});
   const std::size_t texture = add_to(document, "textures", {{"sampler", sampler}, {"source", image}});
   Json pbr = {{"baseColorTexture", {{"index", texture}}}, {"metallicFactor", 0.0}, {"roughnessFactor", 1.0}};
-  if (opacity < 1) pbr["baseColorFactor"] = {1.0, 1.0, 1.0, opacity};
   return add_to(document, "materials",
                 {{"name", name},
                  {"pbrMetallicRoughness", std::move(pbr)},
@@ -80,20 +84,19 @@ std::size_t add_material(Document& document, const std::string& name, std::span<
 
 }  // namespace
 
-std::size_t add_overlay(Document& document, const OverlayMesh& overlay, std::span<const std::uint8_t> png,
-                        double opacity) {
-  const Json extras = {{"applique", {{"decal", overlay.name}}}};
-  Json attributes = {{"POSITION", add_attribute(document, overlay.positions, true)}};
-  attributes["NORMAL"] = add_attribute(document, overlay.normals, false);
-  attributes["TEXCOORD_0"] = add_attribute(document, overlay.uvs, false);
+std::size_t add_overlay(Document& document, const std::string& decal, const OverlayMesh& overlay,
+                        std::span<const std::uint8_t> png) {
+  const Json extras = {{"applique", {{"decal", decal}}}};
+  Json attributes = {{"POSITION", add_attribute<3>(document, overlay.positions, true)}};
+  attributes["NORMAL"] = add_attribute<3>(document, overlay.normals, false);
+  attributes["TEXCOORD_0"] = add_attribute<2>(document, overlay.uvs, false);
   Json primitive = {{"attributes", std::move(attributes)}, {"indices", add_indices(document, overlay)}};
-  primitive["material"] = add_material(document, overlay.name, png, opacity);
+  primitive["material"] = add_material(document, decal, png);
   primitive["mode"] = 4;
-  const std::size_t mesh = add_to(
-      document, "meshes",
-      {{"name", overlay.name}, {"primitives", Json::array({std::move(primitive)})}, {"extras", extras}});
-  const std::size_t node =
-      add_to(document, "nodes", {{"name", overlay.name}, {"mesh", mesh}, {"extras", extras}});
+  const std::size_t mesh =
+      add_to(document, "meshes",
+             {{"name", decal}, {"primitives", Json::array({std::move(primitive)})}, {"extras", extras}});
+  const std::size_t node = add_to(document, "nodes", {{"name", decal}, {"mesh", mesh}, {"extras", extras}});
   if (count_of(document, "scenes") != 0)
     document.json["scenes"][index_of(document.json, "scene").value_or(0)]["nodes"].push_back(node);
   return node;

@@ -6,23 +6,25 @@
 #include <string>
 #include <vector>
 
+#include "applique/base/types.h"
+
 #include "document.h"
 
 namespace applique {
 
-/// A decal as a mesh of its own, in scene space.
+/// A decal as triangles of its own, in scene space.
 struct OverlayMesh {
-  std::string name;
-  std::vector<std::array<float, 3>> positions;  ///< Scene space at the rest pose.
-  std::vector<std::array<float, 3>> normals;    ///< Unit, one per position.
-  std::vector<std::array<float, 2>> uvs;  ///< Image coordinates over the image's size, one per position.
+  std::vector<Vec3> positions;             ///< At the rest pose.
+  std::vector<Vec3> normals;               ///< Unit.
+  std::vector<std::array<double, 2>> uvs;  ///< Image pixels divided by the image's size: [0, 1], v down.
   std::vector<std::array<std::uint32_t, 3>>
       triangles;  ///< Counter-clockwise seen from outside; at least one.
 };
 
-/// Adds the overlay to the default scene: mesh and node named after it with `extras.applique.decal`, the
-/// image (PNG bytes) as base colour with alpha blending, times `opacity`. Returns the node's index.
-std::size_t add_overlay(Document& document, const OverlayMesh& overlay, std::span<const std::uint8_t> png,
-                        double opacity);
+/// Adds an overlay to the default scene: a mesh and a node named after the decal, with
+/// `extras.applique.decal`, and a material that shows the image (PNG bytes) with alpha blending. Returns the
+/// node's index.
+std::size_t add_overlay(Document& document, const std::string& decal, const OverlayMesh& overlay,
+                        std::span<const std::uint8_t> png);
 
 }  // namespace applique

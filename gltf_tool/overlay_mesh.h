@@ -1,23 +1,12 @@
 #pragma once
 
-#include <array>
-#include <cstdint>
-#include <vector>
-
 #include "applique/image/image.h"
 
 #include "model.h"
+#include "overlay.h"
 #include "solve_job.h"
 
 namespace applique {
-
-/// A decal as triangles of its own, in scene space.
-struct OverlayMesh {
-  std::vector<Vec3> positions;
-  std::vector<Vec3> normals;               ///< Unit.
-  std::vector<std::array<double, 2>> uvs;  ///< Image pixels divided by the image's size: [0, 1], v down.
-  std::vector<std::array<std::uint32_t, 3>> triangles;
-};
 
 /// Lays the decal's faces out as a mesh: those that meet the region, divided until the linear texture
 /// coordinates of every triangle lie within `max_deviation` pixels of the exact map (edges are divided for

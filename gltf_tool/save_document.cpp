@@ -25,16 +25,24 @@ struct SideFile {
   std::vector<std::uint8_t> bytes;
 };
 
-/// The media type of an image that glTF can embed, by its first bytes; "" for another.
-std::string media_type(std::span<const std::uint8_t> bytes) {
+bool declares(const Document& document, const char* extension) {
+  const auto* used = find(document.json, {"extensionsUsed"});
+  return used != nullptr && used->is_array() &&
+         std::find(used->begin(), used->end(), extension) != used->end();
+}
+
+/// The media type of an image that the document may embed, by its first bytes; "" for another.
+std::string media_type(const Document& document, std::span<const std::uint8_t> bytes) {
   const auto starts_with = [&](std::string_view magic, std::size_t at = 0) {
     return bytes.size() >= at + magic.size() &&
            std::memcmp(bytes.data() + at, magic.data(), magic.size()) == 0;
   };
   if (starts_with("\x89PNG\r\n\x1a\n")) return "image/png";
   if (starts_with("\xff\xd8\xff")) return "image/jpeg";
-  if (starts_with("RIFF") && starts_with("WEBP", 8)) return "image/webp";
-  if (starts_with("\xabKTX 20\xbb\r\n\x1a\n")) return "image/ktx2";
+  if (starts_with("RIFF") && starts_with("WEBP", 8) && declares(document, "EXT_texture_webp"))
+    return "image/webp";
+  if (starts_with("\xabKTX 20\xbb\r\n\x1a\n") && declares(document, "KHR_texture_basisu"))
+    return "image/ktx2";
   return "";
 }
 
@@ -115,7 +123,7 @@ void pack_images(Document& document) {
     const auto* uri = find(document.json["images"][i], {"uri"});
     if (uri == nullptr) continue;
     const auto bytes = read_uri(document, uri->get<std::string>(), "image");
-    const std::string type = bytes ? media_type(*bytes) : "";
+    const std::string type = bytes ? media_type(document, *bytes) : "";
     if (type.empty()) continue;
     const std::size_t view = add_buffer_view(document, *bytes);
     auto& image = document.json["images"][i];
