@@ -85,7 +85,8 @@ Result<void> check_input(const SurfaceMesh& surface, const DecalInput& input,
   std::vector<std::uint32_t> component;
   for (std::size_t k = 0; k < input.features.size(); ++k) {
     const std::uint32_t c = surface.component[surface.faces[input.features[k].surface.face][0]];
-    const auto part = static_cast<std::size_t>(std::find(component.begin(), component.end(), c) - component.begin());
+    const auto part =
+        static_cast<std::size_t>(std::find(component.begin(), component.end(), c) - component.begin());
     if (part == component.size()) {
       component.push_back(c);
       parts.emplace_back();
@@ -161,7 +162,17 @@ class Solver {
   }
 
   Result<DecalMap> run() {
-    StageTimer timer(map_.times.total);
+    double total = 0;
+    {
+      StageTimer timer(total);
+      APPLIQUE_CHECK(solve());
+    }
+    map_.times.total = total;
+    return std::move(map_);
+  }
+
+ private:
+  Result<void> solve() {
     APPLIQUE_CHECK(check_input(surface_, input_, targets_));
     {
       StageTimer stage(map_.times.graph);
@@ -171,10 +182,9 @@ class Solver {
     Growth growth(seed.disc, std::move(seed.feature_faces), input_.region, cover_limit);
     APPLIQUE_CHECK(grow(seed.disc, growth));
     finish(seed.disc, growth);
-    return std::move(map_);
+    return {};
   }
 
- private:
   Result<Seed> make_seed() {
     StageTimer stage(map_.times.seed);
     std::vector<SurfacePoint> places;
@@ -187,13 +197,13 @@ class Solver {
                             feature_name(input_, i), feature_name(input_, j)));
   }
 
-  /// Embeds, aligns and warps the disc as it is: plane_, image_ and map_.warp.
-  Result<void> parameterize(const ImmersedDisc& disc, const Growth& growth) {
+  /// Embeds, aligns and warps the disc as it is: plane_, image_ and built_.
+  Result<void> parameterize(const ImmersedDisc& disc, const Growth& growth, Energy energy) {
     ++map_.solves;
     std::vector<Vec2> features(targets_.size());
     {
       StageTimer stage(map_.times.embed);
-      Embedding embedding = embed_disc(measure_disc(disc), {options_.energy});
+      Embedding embedding = embed_disc(measure_disc(disc), {energy});
       rung_ = embedding.rung;
       flips_ = embedding.flips;
       for (std::size_t k = 0; k < features.size(); ++k)
@@ -254,18 +264,25 @@ class Solver {
     return probes;
   }
 
-  /// The loop of §2.6 of the design: parameterize, peel, grow, until the region is covered; then the patch is
-  /// trimmed to the faces that meet the region, so that the result does not depend on the way it came about.
+  /// The loop of §2.6 of the design: parameterize, peel, grow, until the region is covered. The conformal
+  /// map, which costs a third of the isometric one, does while the patch is far from its final size. At the
+  /// end the patch is trimmed to the faces that meet the region, so that the result does not depend on the
+  /// way it came about.
   Result<void> grow(ImmersedDisc& disc, Growth& growth) {
     int trims = 0;
+    Energy energy = Energy::conformal;
     while (true) {
-      APPLIQUE_CHECK(parameterize(disc, growth));
+      APPLIQUE_CHECK(parameterize(disc, growth, energy));
       StageTimer stage(map_.times.grow);
       if (map_.solves >= options_.max_solves) break;
       auto inside = growth.inside(image_);
       const std::size_t peeled = trims == 0 ? growth.peel(image_, inside) : 0;
       const std::size_t added = growth.grow(image_, inside, {});
       if (added == 0 && peeled == 0) {
+        if (energy != options_.energy) {
+          energy = options_.energy;
+          continue;
+        }
         if (trims == most_trims || growth.trim(image_) == 0) break;
         ++trims;
       }
