@@ -7,6 +7,10 @@
 #include <variant>
 
 #include "applique/base/types.h"
+#include "applique/surface/surface_mesh.h"
+#include "applique/surface/surface_query.h"
+
+#include "model.h"
 
 namespace applique {
 
@@ -35,7 +39,8 @@ struct VertexPlace {
 /// A point in a triangle of a primitive, by the triangle's index in drawing order.
 struct TrianglePlace {
   std::size_t triangle = 0;
-  std::array<double, 3> barycentric = {1, 0, 0};  ///< Weights of its corners, >= 0, scaled to sum 1.
+  std::array<double, 3> barycentric = {1, 0,
+                                       0};  ///< Weights of its corners in the file's order, >= 0, sum 1.
   Reference mesh;
   std::size_t primitive = 0;
 };
@@ -48,5 +53,16 @@ struct RayPlace {
 
 /// Where a feature lies on a model.
 using Place = std::variant<PositionPlace, UvPlace, VertexPlace, TrianglePlace, RayPlace>;
+
+/// The point of the surface (of `model`, perhaps limited to nodes and materials) that a place means; `query`
+/// is over `surface.mesh`. Texture coordinates are those of the base-colour texture with
+/// KHR_texture_transform applied, so a point of the picture; they are wrapped as the material's sampler does,
+/// and where several triangles share them the first one in drawing order is meant. Errors begin with `owner`
+/// ("decal 'crest', feature 3"): feature_too_far (distance and limit), feature_missed (no triangle has the
+/// texture coordinates, or the ray meets none), feature_place_invalid (a mesh, primitive, vertex, triangle or
+/// material that is not there or not on the surface; barycentrics that are negative or whose sum is off 1 by
+/// more than 1e-6), uvs_missing.
+Result<SurfacePoint> resolve_place(const Place& place, const Model& model, const ModelSurface& surface,
+                                   const SurfaceQuery& query, const std::string& owner);
 
 }  // namespace applique
