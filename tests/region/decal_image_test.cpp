@@ -37,7 +37,7 @@ Region region_of(const std::vector<Pixel>& contour, const Image& image) {
 
 TEST(Coverage, IsTheExactAreaOfEachPixel) {
   const std::vector<Pixel> triangle = {{0.5, 0.25}, {3.5, 0.25}, {0.5, 3.25}};
-  const auto coverage = polygon_coverage(triangle, 4, 4);
+  const auto coverage = polygon_coverage(triangle, 4, 0, 4);
   EXPECT_FLOAT_EQ(coverage[0], 0.375F);  // 0.5 wide, 0.75 high.
   EXPECT_FLOAT_EQ(coverage[1], 0.75F);
   EXPECT_FLOAT_EQ(coverage[2], 0.75F - 0.5F * 0.25F * 0.25F);  // The slope cuts the lower right corner.
@@ -50,7 +50,7 @@ TEST(Coverage, SumsUpToTheAreaInBothOrientations) {
   for (const double shift : {0.0, 0.3, 0.77}) {
     auto polygon = disc(20 + shift, 25 - shift, 17.3, 37);
     for (int turn = 0; turn < 2; ++turn) {
-      const auto coverage = polygon_coverage(polygon, 50, 60);
+      const auto coverage = polygon_coverage(polygon, 50, 0, 60);
       EXPECT_NEAR(std::accumulate(coverage.begin(), coverage.end(), 0.0), area_of(polygon), 1e-4);
       EXPECT_EQ(coverage[50 * 25 + 20], 1.0F);
       EXPECT_EQ(coverage[0], 0.0F);
@@ -60,15 +60,21 @@ TEST(Coverage, SumsUpToTheAreaInBothOrientations) {
 }
 
 TEST(Coverage, PolygonsMayReachBeyondTheImage) {
-  const auto whole = polygon_coverage({{-5, -7}, {30, -7}, {30, 40}, {-5, 40}}, 16, 9);
+  const auto whole = polygon_coverage({{-5, -7}, {30, -7}, {30, 40}, {-5, 40}}, 16, 0, 9);
   for (const float value : whole) EXPECT_EQ(value, 1.0F);
   const auto polygon = disc(3, 5, 12.3, 41);
-  const auto wide = polygon_coverage(disc(33, 35, 12.3, 41), 64, 64);
-  const auto cut = polygon_coverage(polygon, 8, 11);
+  const auto wide = polygon_coverage(disc(33, 35, 12.3, 41), 64, 0, 64);
+  const auto cut = polygon_coverage(polygon, 8, 0, 11);
   for (int y = 0; y < 11; ++y) {
     for (int x = 0; x < 8; ++x)
       EXPECT_NEAR(cut[8 * y + x], wide[64 * (y + 30) + x + 30], 1e-6) << x << ' ' << y;
   }
+}
+
+TEST(Coverage, BandsAreRowsOfTheWhole) {
+  const auto polygon = disc(20, 25, 17.3, 37);
+  const auto whole = polygon_coverage(polygon, 50, 0, 60), band = polygon_coverage(polygon, 50, 13, 40);
+  for (std::size_t i = 0; i < band.size(); ++i) EXPECT_NEAR(band[i], whole[50 * 13 + i], 1e-6);
 }
 
 TEST(DecalImage, SrgbGoesBothWays) {

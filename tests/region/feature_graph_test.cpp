@@ -124,9 +124,10 @@ RC_GTEST_PROP(InnerGeodesics, AreShortest, ()) {
   points.push_back(region.polygon()[0]);
   points.push_back(region.polygon()[2]);
   points.push_back(0.5 * (region.polygon()[0] + region.polygon()[1]));
-  const InnerGeodesics geodesics(region.polygon());
-  for (const Vec2 a : points) {
-    const auto lengths = geodesics.lengths(a, points);
+  const InnerGeodesics geodesics(region.polygon(), points);
+  for (std::size_t k = 0; k < points.size(); ++k) {
+    const Vec2 a = points[k];
+    const auto lengths = geodesics.lengths(k);
     for (std::size_t i = 0; i < points.size(); ++i) {
       if (!region.contains(a) || !region.contains(points[i])) continue;  // The middle of an edge is rounded.
       const double expected = a == points[i] ? 0 : geodesic_by_definition(region, a, points[i]);

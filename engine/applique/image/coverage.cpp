@@ -96,10 +96,12 @@ class Accumulator {
 
 }  // namespace
 
-std::vector<float> polygon_coverage(const std::vector<Pixel>& polygon, int width, int height) {
-  Accumulator accumulator(width, height);
+std::vector<float> polygon_coverage(const std::vector<Pixel>& polygon, int width, int first_row,
+                                    int last_row) {
+  Accumulator accumulator(width, last_row - first_row);
   for (std::size_t i = 0; i < polygon.size(); ++i) {
-    accumulator.add_edge(polygon[i], polygon[i + 1 < polygon.size() ? i + 1 : 0]);
+    const Pixel a = polygon[i], b = polygon[i + 1 < polygon.size() ? i + 1 : 0];
+    accumulator.add_edge({a.x, a.y - first_row}, {b.x, b.y - first_row});
   }
   return accumulator.coverage();
 }

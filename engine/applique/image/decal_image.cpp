@@ -38,14 +38,20 @@ const std::vector<float>& linear_table() {
   return table;
 }
 
-void fill_base(const Image& image, const std::vector<float>& coverage, Texel* texels) {
+void fill_base(const Image& image, const Region& region, Texel* texels) {
+  constexpr std::uint32_t rows_at_once = 32;  // Few enough for their coverage to stay in the cache.
   const std::vector<float>& linear = linear_table();
   for_rows(image.width, image.height, [&](std::uint32_t first, std::uint32_t last) {
-    const std::size_t end = static_cast<std::size_t>(last) * image.width;
-    for (std::size_t i = static_cast<std::size_t>(first) * image.width; i < end; ++i) {
-      const std::uint16_t* in = &image.rgba[4 * i];
-      const float alpha = coverage[i] * static_cast<float>(in[3]) / 65535.0F;
-      texels[i] = {linear[in[0]] * alpha, linear[in[1]] * alpha, linear[in[2]] * alpha, alpha};
+    for (std::uint32_t top = first; top < last; top += rows_at_once) {
+      const std::uint32_t bottom = std::min(top + rows_at_once, last);
+      const std::vector<float> coverage =
+          polygon_coverage(region.contour(), image.width, static_cast<int>(top), static_cast<int>(bottom));
+      const std::uint16_t* in = image.pixel(0, static_cast<int>(top));
+      Texel* out = texels + static_cast<std::size_t>(top) * image.width;
+      for (std::size_t i = 0; i < coverage.size(); ++i, in += 4) {
+        const float alpha = coverage[i] * static_cast<float>(in[3]) / 65535.0F;
+        if (alpha > 0) out[i] = {linear[in[0]] * alpha, linear[in[1]] * alpha, linear[in[2]] * alpha, alpha};
+      }
     }
   });
 }
@@ -92,7 +98,7 @@ DecalImage make_decal_image(const Image& image, const Region& region) {
     decal.levels.push_back(level);
   }
   decal.texels.resize(std::size_t{level.offset} + 1);
-  fill_base(image, polygon_coverage(region.contour(), image.width, image.height), decal.texels.data());
+  fill_base(image, region, decal.texels.data());
   for (std::size_t k = 1; k < decal.levels.size(); ++k) {
     halve(&decal.texels[decal.levels[k - 1].offset], decal.levels[k - 1], decal.levels[k],
           &decal.texels[decal.levels[k].offset]);

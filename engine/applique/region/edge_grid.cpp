@@ -2,7 +2,52 @@
 
 #include <cmath>
 
+#include "applique/base/predicates.h"
+
 namespace applique {
+namespace {
+
+/// A point where the segments a b and c d meet, if they do.
+std::optional<Vec2> meeting_point(Vec2 a, Vec2 b, Vec2 c, Vec2 d) {
+  if (!boxes_meet(a, b, c, d)) return std::nullopt;
+  const int oc = orientation(a, b, c), od = orientation(a, b, d);
+  if (oc * od > 0) return std::nullopt;
+  const int oa = orientation(c, d, a), ob = orientation(c, d, b);
+  if (oa * ob > 0) return std::nullopt;
+  if (oc == 0 && in_box(c, a, b)) return c;
+  if (od == 0 && in_box(d, a, b)) return d;
+  if (oa == 0 && in_box(a, c, d)) return a;
+  if (ob == 0 && in_box(b, c, d)) return b;
+  if (oc * od == 0 || oa * ob == 0) return std::nullopt;
+  const double t = cross(c - a, d - c) / cross(b - a, d - c);
+  return a + t * (b - a);
+}
+
+}  // namespace
+
+bool in_box(Vec2 z, Vec2 a, Vec2 b) {
+  return std::min(a.real(), b.real()) <= z.real() && z.real() <= std::max(a.real(), b.real()) &&
+         std::min(a.imag(), b.imag()) <= z.imag() && z.imag() <= std::max(a.imag(), b.imag());
+}
+
+bool boxes_meet(Vec2 a, Vec2 b, Vec2 c, Vec2 d) {
+  return std::max(a.real(), b.real()) >= std::min(c.real(), d.real()) &&
+         std::max(c.real(), d.real()) >= std::min(a.real(), b.real()) &&
+         std::max(a.imag(), b.imag()) >= std::min(c.imag(), d.imag()) &&
+         std::max(c.imag(), d.imag()) >= std::min(a.imag(), b.imag());
+}
+
+std::optional<Vec2> improper_meeting(const std::vector<Vec2>& polygon, std::uint32_t e, std::uint32_t f) {
+  const auto n = static_cast<std::uint32_t>(polygon.size());
+  const auto end = [&](std::uint32_t edge) { return polygon[edge + 1 == n ? 0 : edge + 1]; };
+  const bool follows = f == e + 1, precedes = e == 0 && f == n - 1;
+  if (!follows && !precedes) return meeting_point(polygon[e], end(e), polygon[f], end(f));
+  const Vec2 before = follows ? polygon[e] : polygon[f];
+  const Vec2 shared = follows ? polygon[f] : polygon[e];
+  const Vec2 after = follows ? end(f) : end(e);
+  if (orientation(before, shared, after) == 0 && dot(shared - before, after - shared) < 0) return shared;
+  return std::nullopt;
+}
 
 EdgeGrid::EdgeGrid(const std::vector<Vec2>& polygon) {
   Vec2 low = polygon[0], high = polygon[0];

@@ -2,12 +2,20 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "applique/base/types.h"
 
 namespace applique {
+
+bool in_box(Vec2 z, Vec2 a, Vec2 b);              ///< In the bounding box of a and b.
+bool boxes_meet(Vec2 a, Vec2 b, Vec2 c, Vec2 d);  ///< The bounding boxes of a, b and of c, d.
+
+/// Where the edges e < f of a polygon meet and those of a simple polygon must not: a point of one on the
+/// other, or for neighbours, folding back on each other.
+std::optional<Vec2> improper_meeting(const std::vector<Vec2>& polygon, std::uint32_t e, std::uint32_t f);
 
 /// A uniform grid over the edges of a closed polygon: which edges may meet a cell. Edge i runs from vertex i
 /// to vertex i + 1. The outermost cells all round touch no edge and lie outside the polygon.
@@ -32,6 +40,18 @@ class EdgeGrid {
   /// All edges that meet the cell, ascending; some of them may pass it by a hair.
   [[nodiscard]] std::span<const std::uint32_t> edges(int cell) const {
     return {edges_.data() + first_[cell], edges_.data() + first_[cell + 1]};
+  }
+
+  /// Calls `visit(e, f)`, e < f, for all edges that share a cell; more than once for those that share
+  /// several.
+  template <class Visit>
+  void visit_pairs(Visit&& visit) const {
+    for (int cell = 0; cell < columns_ * rows_; ++cell) {
+      const auto list = edges(cell);
+      for (std::size_t i = 0; i < list.size(); ++i) {
+        for (std::size_t j = i + 1; j < list.size(); ++j) visit(list[i], list[j]);
+      }
+    }
   }
 
   /// Calls `visit(cell)` for every cell that the segment meets, and perhaps neighbours that it passes by a

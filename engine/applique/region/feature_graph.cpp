@@ -164,10 +164,10 @@ std::vector<std::array<std::uint32_t, 3>> triangles_of(const std::vector<Vec2>& 
 /// Joins what `components` leaves apart by the shortest ways inside the region.
 std::vector<Link> join_by_geodesics(const Region& region, const std::vector<Vec2>& features,
                                     Components& components) {
-  const InnerGeodesics geodesics(region.polygon());
+  const InnerGeodesics geodesics(region.polygon(), features);
   std::vector<Link> links;
   for (std::uint32_t i = 0; i + 1 < features.size(); ++i) {
-    const std::vector<double> lengths = geodesics.lengths(features[i], features);
+    const std::vector<double> lengths = geodesics.lengths(i);
     for (std::uint32_t j = i + 1; j < features.size(); ++j) {
       if (components.of(i) != components.of(j))
         links.push_back(make_link(features, i, j, lengths[j] * lengths[j]));

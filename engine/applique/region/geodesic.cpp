@@ -53,9 +53,11 @@ double pull_tight(Vec2 a, Vec2 b, std::vector<Portal> portals) {
 
 }  // namespace
 
-InnerGeodesics::InnerGeodesics(const std::vector<Vec2>& polygon) : polygon_(polygon) {
+InnerGeodesics::InnerGeodesics(const std::vector<Vec2>& polygon, const std::vector<Vec2>& points)
+    : polygon_(polygon), points_(points) {
   cut_ears();
   link_triangles();
+  for (const Vec2 z : points) homes_.push_back(triangle_of(z));
 }
 
 void InnerGeodesics::cut_ears() {
@@ -75,8 +77,13 @@ void InnerGeodesics::cut_ears() {
   const auto is_ear = [&](std::uint32_t i) {
     if (turn(i) <= 0) return false;
     const Vec2 a = polygon_[before[i]], b = polygon_[i], c = polygon_[next[i]];
+    const double left = std::min({a.real(), b.real(), c.real()}),
+                 right = std::max({a.real(), b.real(), c.real()});
+    const double bottom = std::min({a.imag(), b.imag(), c.imag()}),
+                 top = std::max({a.imag(), b.imag(), c.imag()});
     return std::none_of(blocking.begin(), blocking.end(), [&](std::uint32_t k) {
       const Vec2 z = polygon_[k];
+      if (z.real() < left || z.real() > right || z.imag() < bottom || z.imag() > top) return false;
       return k != before[i] && k != next[i] && k != i && orientation(a, b, z) >= 0 &&
              orientation(b, c, z) >= 0 && orientation(c, a, z) >= 0;
     });
@@ -136,8 +143,8 @@ std::int32_t InnerGeodesics::triangle_of(Vec2 z) const {
   return nearest;
 }
 
-std::vector<double> InnerGeodesics::lengths(Vec2 source, const std::vector<Vec2>& targets) const {
-  const std::int32_t start = triangle_of(source);
+std::vector<double> InnerGeodesics::lengths(std::size_t source) const {
+  const std::int32_t start = homes_[source];
   std::vector<std::int32_t> parent(triangles_.size(), -1);
   std::vector<std::int32_t> order = {start};
   for (std::size_t i = 0; i < order.size(); ++i) {
@@ -148,9 +155,9 @@ std::vector<double> InnerGeodesics::lengths(Vec2 source, const std::vector<Vec2>
     }
   }
   std::vector<double> result;
-  for (const Vec2 target : targets) {
+  for (std::size_t target = 0; target < points_.size(); ++target) {
     std::vector<Portal> portals;
-    for (std::int32_t t = triangle_of(target); t != start; t = parent[t]) {
+    for (std::int32_t t = homes_[target]; t != start; t = parent[t]) {
       const auto& neighbours = triangles_[t].neighbours;
       const auto k = static_cast<std::size_t>(std::find(neighbours.begin(), neighbours.end(), parent[t]) -
                                               neighbours.begin());
@@ -159,7 +166,7 @@ std::vector<double> InnerGeodesics::lengths(Vec2 source, const std::vector<Vec2>
       portals.push_back({polygon_[triangles_[t].vertices[k]], polygon_[triangles_[t].vertices[(k + 1) % 3]]});
     }
     std::reverse(portals.begin(), portals.end());
-    result.push_back(pull_tight(source, target, std::move(portals)));
+    result.push_back(pull_tight(points_[source], points_[target], std::move(portals)));
   }
   return result;
 }

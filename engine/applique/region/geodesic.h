@@ -8,16 +8,16 @@
 
 namespace applique {
 
-/// Lengths of shortest paths that stay inside a simple polygon: the polygon is cut into triangles once; their
-/// dual graph is a tree, so that a path's sleeve is unique and a funnel (Lee and Preparata 1984) pulls it
-/// tight.
+/// Lengths of shortest paths between points that stay inside a simple polygon: the polygon is cut into
+/// triangles once; their dual graph is a tree, so that a path's sleeve is unique and a funnel (Lee and
+/// Preparata 1984) pulls it tight.
 class InnerGeodesics {
  public:
-  /// `polygon` is simple and counter-clockwise.
-  explicit InnerGeodesics(const std::vector<Vec2>& polygon);
+  /// `polygon` is simple and counter-clockwise; `points` lie in it. Expected time O(n reflex vertices).
+  InnerGeodesics(const std::vector<Vec2>& polygon, const std::vector<Vec2>& points);
 
-  /// Lengths of the shortest inner paths from `source` to each of `targets`, all in the closed polygon.
-  [[nodiscard]] std::vector<double> lengths(Vec2 source, const std::vector<Vec2>& targets) const;
+  /// Lengths of the shortest inner paths from point `source` to every point. O(n points).
+  [[nodiscard]] std::vector<double> lengths(std::size_t source) const;
 
  private:
   struct Triangle {
@@ -30,6 +30,8 @@ class InnerGeodesics {
 
   std::vector<Vec2> polygon_;
   std::vector<Triangle> triangles_;
+  std::vector<Vec2> points_;
+  std::vector<std::int32_t> homes_;  ///< By point: the triangle that it lies in.
 };
 
 }  // namespace applique

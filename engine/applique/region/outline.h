@@ -16,4 +16,12 @@ std::vector<Pixel> rectangle_outline(const Image& image);
 /// to at most 0.75 px away from the traced curve and never inward of an opaque pixel. Errors: region_empty.
 Result<std::vector<Pixel>> alpha_outline(const Image& image, double threshold);
 
+/// Its first half: the curve along pixel edges, clockwise on the screen. Where two opaque pixels share only a
+/// corner, the curve passes it a quarter pixel off, into the transparent pixel.
+Result<std::vector<Pixel>> trace_alpha(const Image& image, double threshold);
+
+/// Its second half: leaves out vertices of a traced curve as long as it moves outwards only, by at most
+/// `tolerance` px, and stays simple. Expected time O(n).
+std::vector<Pixel> simplify_outline(const std::vector<Pixel>& traced, double tolerance);
+
 }  // namespace applique

@@ -1,7 +1,6 @@
 #include "applique/region/region.h"
 
 #include <cmath>
-#include <limits>
 #include <optional>
 
 #include <fmt/format.h>
@@ -10,18 +9,6 @@
 
 namespace applique {
 namespace {
-
-bool in_box(Vec2 z, Vec2 a, Vec2 b) {
-  return std::min(a.real(), b.real()) <= z.real() && z.real() <= std::max(a.real(), b.real()) &&
-         std::min(a.imag(), b.imag()) <= z.imag() && z.imag() <= std::max(a.imag(), b.imag());
-}
-
-bool boxes_meet(Vec2 a, Vec2 b, Vec2 c, Vec2 d) {
-  return std::max(a.real(), b.real()) >= std::min(c.real(), d.real()) &&
-         std::max(c.real(), d.real()) >= std::min(a.real(), b.real()) &&
-         std::max(a.imag(), b.imag()) >= std::min(c.imag(), d.imag()) &&
-         std::max(c.imag(), d.imag()) >= std::min(a.imag(), b.imag());
-}
 
 /// Where q lies as seen from the polygon's vertex v between `before` and `after`: +1 in the open interior
 /// cone, 0 along one of the two edges, -1 outside.
@@ -34,22 +21,6 @@ int side_of_cone(Vec2 before, Vec2 v, Vec2 after, Vec2 q) {
   return in;
 }
 
-/// A point where the segments a b and c d meet, if they do.
-std::optional<Vec2> meeting_point(Vec2 a, Vec2 b, Vec2 c, Vec2 d) {
-  if (!boxes_meet(a, b, c, d)) return std::nullopt;
-  const int oc = orientation(a, b, c), od = orientation(a, b, d);
-  if (oc * od > 0) return std::nullopt;
-  const int oa = orientation(c, d, a), ob = orientation(c, d, b);
-  if (oa * ob > 0) return std::nullopt;
-  if (oc == 0 && in_box(c, a, b)) return c;
-  if (od == 0 && in_box(d, a, b)) return d;
-  if (oa == 0 && in_box(a, c, d)) return a;
-  if (ob == 0 && in_box(b, c, d)) return b;
-  if (oc * od == 0 || oa * ob == 0) return std::nullopt;
-  const double t = cross(c - a, d - c) / cross(b - a, d - c);
-  return a + t * (b - a);
-}
-
 struct Crossing {
   std::uint32_t first, second;  ///< Edges, first < second.
   Vec2 place;
@@ -57,30 +28,11 @@ struct Crossing {
 
 /// The first pair of edges, in lexicographic order, that meet where a simple polygon's must not.
 std::optional<Crossing> find_crossing(const std::vector<Vec2>& polygon, const EdgeGrid& grid) {
-  const auto n = static_cast<std::uint32_t>(polygon.size());
-  const auto end = [&](std::uint32_t edge) { return polygon[(edge + 1) % n]; };
   std::optional<Crossing> found;
-  for (int cell = 0; cell < grid.columns() * grid.rows(); ++cell) {
-    const auto edges = grid.edges(cell);
-    for (std::size_t i = 0; i < edges.size(); ++i) {
-      for (std::size_t j = i + 1; j < edges.size(); ++j) {
-        const std::uint32_t e = edges[i], f = edges[j];
-        if (found && std::pair(e, f) >= std::pair(found->first, found->second)) continue;
-        const bool follows = f == e + 1, precedes = e == 0 && f == n - 1;
-        std::optional<Vec2> place;
-        if (follows || precedes) {  // They share a vertex; only folding back is wrong.
-          const Vec2 before = follows ? polygon[e] : polygon[f];
-          const Vec2 shared = follows ? polygon[f] : polygon[e];
-          const Vec2 after = follows ? end(f) : end(e);
-          if (orientation(before, shared, after) == 0 && dot(shared - before, after - shared) < 0)
-            place = shared;
-        } else {
-          place = meeting_point(polygon[e], end(e), polygon[f], end(f));
-        }
-        if (place) found = Crossing{e, f, *place};
-      }
-    }
-  }
+  grid.visit_pairs([&](std::uint32_t e, std::uint32_t f) {
+    if (found && std::pair(e, f) >= std::pair(found->first, found->second)) return;
+    if (const auto place = improper_meeting(polygon, e, f)) found = Crossing{e, f, *place};
+  });
   return found;
 }
 
@@ -91,12 +43,6 @@ bool all_collinear(const std::vector<Pixel>& contour) {
     if (orientation(point(0), point(1), point(i)) != 0) return false;
   }
   return true;
-}
-
-double squared_distance(Vec2 z, Vec2 a, Vec2 b) {
-  const Vec2 d = b - a;
-  const double t = std::clamp(dot(z - a, d) / std::norm(d), 0.0, 1.0);
-  return std::norm(z - a - t * d);
 }
 
 }  // namespace
@@ -158,7 +104,7 @@ Result<Region> Region::from_contour(const std::vector<Pixel>& contour, const Ima
   }
   region.diameter_ = std::abs(region.high_ - region.low_);
   region.classify_cells();
-  region.measure_rings();
+  region.tree_ = EdgeTree(polygon);
   return region;
 }
 
@@ -192,30 +138,6 @@ void Region::classify_cells() {
           inside ^= crosses_edge(references_[cell - 1], z, e);
       }
       inside_[cell] = inside ? 1 : 0;
-    }
-  }
-}
-
-// Chebyshev distance of each cell to the nearest one with an edge, in two sweeps.
-void Region::measure_rings() {
-  const int columns = grid_.columns(), rows = grid_.rows();
-  rings_.assign(static_cast<std::size_t>(columns) * rows, columns + rows);
-  const auto relax = [&](int x, int y, int dx, int dy) {
-    if (x + dx < 0 || x + dx >= columns || y + dy < 0 || y + dy >= rows) return;
-    auto& ring = rings_[grid_.cell(x, y)];
-    ring = std::min(ring, rings_[grid_.cell(x + dx, y + dy)] + 1);
-  };
-  for (int y = 0; y < rows; ++y) {
-    for (int x = 0; x < columns; ++x) {
-      if (!grid_.edges(grid_.cell(x, y)).empty()) rings_[grid_.cell(x, y)] = 0;
-      for (const int dx : {-1, 0, 1}) relax(x, y, dx, -1);
-      relax(x, y, -1, 0);
-    }
-  }
-  for (int y = rows - 1; y >= 0; --y) {
-    for (int x = columns - 1; x >= 0; --x) {
-      for (const int dx : {-1, 0, 1}) relax(x, y, dx, 1);
-      relax(x, y, 1, 0);
     }
   }
 }
@@ -317,30 +239,8 @@ bool Region::meets_triangle(Vec2 a, Vec2 b, Vec2 c) const {
 }
 
 double Region::signed_distance(Vec2 z) const {
-  const int column = grid_.column(z.real()), row = grid_.row(z.imag());
-  const int columns = grid_.columns(), rows = grid_.rows();
-  double best = std::numeric_limits<double>::infinity();  // Squared.
-  const auto visit = [&](int x, int y) {
-    if (x < 0 || x >= columns || y < 0 || y >= rows) return;
-    for (const std::uint32_t e : grid_.edges(grid_.cell(x, y))) {
-      best = std::min(best, squared_distance(z, polygon_[e], vertex(e + 1)));
-    }
-  };
-  // A point in ring r is at least r - 1 cells away, also from a z outside the grid; one ring more for
-  // rounding.
-  for (int ring = rings_[grid_.cell(column, row)];; ++ring) {
-    const double reached = grid_.cell_size() * std::max(0, ring - 1);
-    if (reached * reached > best) break;
-    for (int x = column - ring; x <= column + ring; ++x) {
-      visit(x, row - ring);
-      if (ring > 0) visit(x, row + ring);
-    }
-    for (int y = row - ring + 1; y < row + ring; ++y) {
-      visit(column - ring, y);
-      visit(column + ring, y);
-    }
-  }
-  return contains(z) ? std::sqrt(best) : -std::sqrt(best);
+  const double distance = std::sqrt(tree_.squared_distance(z));
+  return contains(z) ? distance : -distance;
 }
 
 }  // namespace applique

@@ -9,6 +9,7 @@
 #include "applique/base/types.h"
 #include "applique/image/image_frame.h"
 #include "applique/region/edge_grid.h"
+#include "applique/region/edge_tree.h"
 
 namespace applique {
 
@@ -54,7 +55,6 @@ class Region {
   [[nodiscard]] Vec2 vertex(std::size_t i) const { return polygon_[i == polygon_.size() ? 0 : i]; }
   [[nodiscard]] bool crosses_edge(Vec2 a, Vec2 b, std::uint32_t edge) const;
   void classify_cells();
-  void measure_rings();
 
   ImageFrame frame_;
   std::vector<Vec2> polygon_;
@@ -63,9 +63,9 @@ class Region {
   double diameter_ = 0;
   Vec2 low_, high_;  ///< The bounding box.
   EdgeGrid grid_;
-  std::vector<Vec2> references_;     ///< By cell: a point of it that is not on the contour.
-  std::vector<char> inside_;         ///< By cell: whether its reference is inside.
-  std::vector<std::int32_t> rings_;  ///< By cell: rings of cells around it before one with an edge.
+  EdgeTree tree_;
+  std::vector<Vec2> references_;  ///< By cell: a point of it that is not on the contour.
+  std::vector<char> inside_;      ///< By cell: whether its reference is inside.
 };
 
 }  // namespace applique
