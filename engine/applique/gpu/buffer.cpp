@@ -1,7 +1,6 @@
 #include "applique/gpu/buffer.h"
 
 #include <cstring>
-#include <utility>
 
 namespace applique {
 namespace {
@@ -35,31 +34,28 @@ Result<Buffer> Buffer::create_in(const Device& device, const std::string& name, 
                                  VkBufferUsageFlags usage, VkMemoryPropertyFlags required,
                                  VkMemoryPropertyFlags preferred) {
   const VkDevice handle = device.handles().device;
-  const VolkDeviceTable& vk = device.functions();
   Buffer buffer;
-  buffer.functions_ = &vk;
-  buffer.device_ = handle;
   buffer.size_ = size;
   VkBufferCreateInfo info{VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO};
   info.size = size;
   info.usage = usage;
-  APPLIQUE_VK(device, vkCreateBuffer, handle, &info, nullptr, &buffer.buffer_);
+  APPLIQUE_VK_CREATE(device, buffer.buffer_, vkCreateBuffer, vkDestroyBuffer, &info);
   VkMemoryRequirements needs;
-  vk.vkGetBufferMemoryRequirements(handle, buffer.buffer_, &needs);
+  device.functions().vkGetBufferMemoryRequirements(handle, buffer.handle(), &needs);
   APPLIQUE_TRY(const std::uint32_t type, find_memory_type(device, needs.memoryTypeBits, required, preferred));
   VkMemoryAllocateInfo allocate{VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO};
   allocate.allocationSize = needs.size;
   allocate.memoryTypeIndex = type;
-  APPLIQUE_VK(device, vkAllocateMemory, handle, &allocate, nullptr, &buffer.memory_);
-  APPLIQUE_VK(device, vkBindBufferMemory, handle, buffer.buffer_, buffer.memory_, 0);
+  APPLIQUE_VK_CREATE(device, buffer.memory_, vkAllocateMemory, vkFreeMemory, &allocate);
+  APPLIQUE_VK(device, vkBindBufferMemory, handle, buffer.handle(), buffer.memory_.get(), 0);
   const VkMemoryPropertyFlags properties = device.memory().memoryTypes[type].propertyFlags;
   if ((properties & visible) == visible) {
     void* mapped = nullptr;
-    APPLIQUE_VK(device, vkMapMemory, handle, buffer.memory_, 0, VK_WHOLE_SIZE, 0, &mapped);
+    APPLIQUE_VK(device, vkMapMemory, handle, buffer.memory_.get(), 0, VK_WHOLE_SIZE, 0, &mapped);
     buffer.mapped_ = static_cast<std::byte*>(mapped);
     buffer.cached_ = (properties & VK_MEMORY_PROPERTY_HOST_CACHED_BIT) != 0;
   }
-  device.set_name(VK_OBJECT_TYPE_BUFFER, reinterpret_cast<std::uint64_t>(buffer.buffer_), name);
+  device.set_name(VK_OBJECT_TYPE_BUFFER, reinterpret_cast<std::uint64_t>(buffer.handle()), name);
   return buffer;
 }
 
@@ -73,7 +69,7 @@ Result<void> Buffer::write(const Device& device, std::span<const std::byte> byte
   APPLIQUE_TRY(const Buffer staging,
                create_in(device, "upload", bytes.size(), VK_BUFFER_USAGE_TRANSFER_SRC_BIT, visible, 0));
   std::memcpy(staging.mapped_, bytes.data(), bytes.size());
-  return copy(device, staging.buffer_, buffer_, bytes.size());
+  return copy(device, staging.handle(), handle(), bytes.size());
 }
 
 Result<void> Buffer::read(const Device& device, std::span<std::byte> bytes) const {
@@ -86,35 +82,9 @@ Result<void> Buffer::read(const Device& device, std::span<std::byte> bytes) cons
   APPLIQUE_TRY(const Buffer staging,
                create_in(device, "download", bytes.size(), VK_BUFFER_USAGE_TRANSFER_DST_BIT, visible,
                          VK_MEMORY_PROPERTY_HOST_CACHED_BIT));
-  APPLIQUE_CHECK(copy(device, buffer_, staging.buffer_, bytes.size()));
+  APPLIQUE_CHECK(copy(device, handle(), staging.handle(), bytes.size()));
   std::memcpy(bytes.data(), staging.mapped_, bytes.size());
   return {};
-}
-
-void Buffer::destroy() {
-  if (functions_ == nullptr) return;
-  functions_->vkDestroyBuffer(device_, buffer_, nullptr);
-  functions_->vkFreeMemory(device_, memory_, nullptr);
-  functions_ = nullptr;
-}
-
-Buffer::~Buffer() {
-  destroy();
-}
-
-Buffer::Buffer(Buffer&& other) noexcept {
-  *this = std::move(other);
-}
-
-Buffer& Buffer::operator=(Buffer&& other) noexcept {
-  std::swap(functions_, other.functions_);
-  std::swap(device_, other.device_);
-  std::swap(buffer_, other.buffer_);
-  std::swap(memory_, other.memory_);
-  std::swap(size_, other.size_);
-  std::swap(mapped_, other.mapped_);
-  std::swap(cached_, other.cached_);
-  return *this;
 }
 
 }  // namespace applique

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "applique/gpu/device.h"
+#include "applique/gpu/device_object.h"
 
 namespace applique {
 
@@ -16,11 +17,8 @@ class Buffer {
   /// `size` > 0 bytes. Errors: device_failed.
   static Result<Buffer> create(const Device& device, const std::string& name, VkDeviceSize size,
                                VkBufferUsageFlags usage);
-  ~Buffer();
-  Buffer(Buffer&& other) noexcept;
-  Buffer& operator=(Buffer&& other) noexcept;
 
-  [[nodiscard]] VkBuffer handle() const { return buffer_; }
+  [[nodiscard]] VkBuffer handle() const { return buffer_.get(); }
   [[nodiscard]] VkDeviceSize size() const { return size_; }
 
   /// Copies from or to the start of the buffer; no more bytes than it has. Errors: device_failed.
@@ -31,12 +29,9 @@ class Buffer {
   static Result<Buffer> create_in(const Device& device, const std::string& name, VkDeviceSize size,
                                   VkBufferUsageFlags usage, VkMemoryPropertyFlags required,
                                   VkMemoryPropertyFlags preferred);
-  void destroy();
 
-  const VolkDeviceTable* functions_ = nullptr;
-  VkDevice device_ = VK_NULL_HANDLE;
-  VkBuffer buffer_ = VK_NULL_HANDLE;
-  VkDeviceMemory memory_ = VK_NULL_HANDLE;
+  DeviceObject<VkDeviceMemory> memory_;
+  DeviceObject<VkBuffer> buffer_;
   VkDeviceSize size_ = 0;
   std::byte* mapped_ = nullptr;  // Null where the processor does not see the memory.
   bool cached_ = false;          // Reading through `mapped_` is fast.

@@ -1,16 +1,13 @@
 #include "applique/gpu/compute_pipeline.h"
 
 #include <algorithm>
-#include <utility>
 
 namespace applique {
 
 Result<ComputePipeline> ComputePipeline::create(const Device& device, const ComputePipelineInfo& info) {
   const VkDevice handle = device.handles().device;
-  const VolkDeviceTable& vk = device.functions();
   ComputePipeline result;
-  result.functions_ = &vk;
-  result.device_ = handle;
+  result.device_ = &device;
   result.uniform_ = info.uniform;
 
   std::vector<VkDescriptorSetLayoutBinding> bindings;
@@ -23,15 +20,16 @@ Result<ComputePipeline> ComputePipeline::create(const Device& device, const Comp
   VkDescriptorSetLayoutCreateInfo set_info{VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO};
   set_info.bindingCount = static_cast<std::uint32_t>(bindings.size());
   set_info.pBindings = bindings.data();
-  APPLIQUE_VK(device, vkCreateDescriptorSetLayout, handle, &set_info, nullptr, &result.set_layout_);
+  APPLIQUE_VK_CREATE(device, result.set_layout_, vkCreateDescriptorSetLayout, vkDestroyDescriptorSetLayout,
+                     &set_info);
 
   const VkPushConstantRange push{VK_SHADER_STAGE_COMPUTE_BIT, 0, info.push_size};
   VkPipelineLayoutCreateInfo layout_info{VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO};
   layout_info.setLayoutCount = 1;
-  layout_info.pSetLayouts = &result.set_layout_;
+  layout_info.pSetLayouts = result.set_layout_.address();
   layout_info.pushConstantRangeCount = info.push_size > 0 ? 1 : 0;
   layout_info.pPushConstantRanges = &push;
-  APPLIQUE_VK(device, vkCreatePipelineLayout, handle, &layout_info, nullptr, &result.layout_);
+  APPLIQUE_VK_CREATE(device, result.layout_, vkCreatePipelineLayout, vkDestroyPipelineLayout, &layout_info);
 
   std::vector<VkDescriptorPoolSize> sizes;
   if (!info.storage.empty()) {
@@ -44,18 +42,18 @@ Result<ComputePipeline> ComputePipeline::create(const Device& device, const Comp
   pool_info.maxSets = 1;
   pool_info.poolSizeCount = static_cast<std::uint32_t>(sizes.size());
   pool_info.pPoolSizes = sizes.data();
-  APPLIQUE_VK(device, vkCreateDescriptorPool, handle, &pool_info, nullptr, &result.pool_);
+  APPLIQUE_VK_CREATE(device, result.pool_, vkCreateDescriptorPool, vkDestroyDescriptorPool, &pool_info);
   VkDescriptorSetAllocateInfo set_allocate{VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO};
-  set_allocate.descriptorPool = result.pool_;
+  set_allocate.descriptorPool = result.pool_.get();
   set_allocate.descriptorSetCount = 1;
-  set_allocate.pSetLayouts = &result.set_layout_;
+  set_allocate.pSetLayouts = result.set_layout_.address();
   APPLIQUE_VK(device, vkAllocateDescriptorSets, handle, &set_allocate, &result.set_);
 
   VkShaderModuleCreateInfo module_info{VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO};
   module_info.codeSize = info.spirv.size_bytes();
   module_info.pCode = info.spirv.data();
-  VkShaderModule module = VK_NULL_HANDLE;
-  APPLIQUE_VK(device, vkCreateShaderModule, handle, &module_info, nullptr, &module);
+  DeviceObject<VkShaderModule> module;
+  APPLIQUE_VK_CREATE(device, module, vkCreateShaderModule, vkDestroyShaderModule, &module_info);
   const VkBool32 constant = info.constant ? VK_TRUE : VK_FALSE;
   const VkSpecializationMapEntry entry{0, 0, sizeof(constant)};
   const VkSpecializationInfo specialization{1, &entry, sizeof(constant), &constant};
@@ -64,15 +62,15 @@ Result<ComputePipeline> ComputePipeline::create(const Device& device, const Comp
                          nullptr,
                          0,
                          VK_SHADER_STAGE_COMPUTE_BIT,
-                         module,
+                         module.get(),
                          "main",
                          &specialization};
-  pipeline_info.layout = result.layout_;
-  const VkResult made = vk.vkCreateComputePipelines(handle, device.pipeline_cache(), 1, &pipeline_info,
-                                                    nullptr, &result.pipeline_);
-  vk.vkDestroyShaderModule(handle, module, nullptr);
-  if (made != VK_SUCCESS) return device_failure("vkCreateComputePipelines", made);
-  device.set_name(VK_OBJECT_TYPE_PIPELINE, reinterpret_cast<std::uint64_t>(result.pipeline_), info.name);
+  pipeline_info.layout = result.layout_.get();
+  VkPipeline pipeline = VK_NULL_HANDLE;
+  APPLIQUE_VK(device, vkCreateComputePipelines, handle, device.pipeline_cache(), 1, &pipeline_info, nullptr,
+              &pipeline);
+  result.pipeline_ = {handle, pipeline, device.functions().vkDestroyPipeline};
+  device.set_name(VK_OBJECT_TYPE_PIPELINE, reinterpret_cast<std::uint64_t>(pipeline), info.name);
   device.set_name(VK_OBJECT_TYPE_DESCRIPTOR_SET, reinterpret_cast<std::uint64_t>(result.set_), info.name);
   return result;
 }
@@ -91,49 +89,21 @@ void ComputePipeline::bind(const std::vector<Binding>& bindings) const {
         uniform ? VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER : VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
     writes[i].pBufferInfo = &buffers[i];
   }
-  functions_->vkUpdateDescriptorSets(device_, static_cast<std::uint32_t>(writes.size()), writes.data(), 0,
-                                     nullptr);
+  device_->functions().vkUpdateDescriptorSets(
+      device_->handles().device, static_cast<std::uint32_t>(writes.size()), writes.data(), 0, nullptr);
 }
 
 void ComputePipeline::dispatch(VkCommandBuffer commands, std::span<const std::byte> push,
                                std::uint32_t groups) const {
-  functions_->vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline_);
-  functions_->vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_COMPUTE, layout_, 0, 1, &set_, 0,
-                                      nullptr);
+  const VolkDeviceTable& vk = device_->functions();
+  vk.vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline_.get());
+  vk.vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_COMPUTE, layout_.get(), 0, 1, &set_, 0,
+                             nullptr);
   if (!push.empty()) {
-    functions_->vkCmdPushConstants(commands, layout_, VK_SHADER_STAGE_COMPUTE_BIT, 0,
-                                   static_cast<std::uint32_t>(push.size()), push.data());
+    vk.vkCmdPushConstants(commands, layout_.get(), VK_SHADER_STAGE_COMPUTE_BIT, 0,
+                          static_cast<std::uint32_t>(push.size()), push.data());
   }
-  functions_->vkCmdDispatch(commands, groups, 1, 1);
-}
-
-void ComputePipeline::destroy() {
-  if (functions_ == nullptr) return;
-  functions_->vkDestroyPipeline(device_, pipeline_, nullptr);
-  functions_->vkDestroyDescriptorPool(device_, pool_, nullptr);
-  functions_->vkDestroyPipelineLayout(device_, layout_, nullptr);
-  functions_->vkDestroyDescriptorSetLayout(device_, set_layout_, nullptr);
-  functions_ = nullptr;
-}
-
-ComputePipeline::~ComputePipeline() {
-  destroy();
-}
-
-ComputePipeline::ComputePipeline(ComputePipeline&& other) noexcept {
-  *this = std::move(other);
-}
-
-ComputePipeline& ComputePipeline::operator=(ComputePipeline&& other) noexcept {
-  std::swap(functions_, other.functions_);
-  std::swap(device_, other.device_);
-  std::swap(set_layout_, other.set_layout_);
-  std::swap(layout_, other.layout_);
-  std::swap(pipeline_, other.pipeline_);
-  std::swap(pool_, other.pool_);
-  std::swap(set_, other.set_);
-  std::swap(uniform_, other.uniform_);
-  return *this;
+  vk.vkCmdDispatch(commands, groups, 1, 1);
 }
 
 }  // namespace applique

@@ -23,9 +23,6 @@ class ComputePipeline {
  public:
   ComputePipeline() = default;
   static Result<ComputePipeline> create(const Device& device, const ComputePipelineInfo& info);
-  ~ComputePipeline();
-  ComputePipeline(ComputePipeline&& other) noexcept;
-  ComputePipeline& operator=(ComputePipeline&& other) noexcept;
 
   struct Binding {
     std::uint32_t binding;
@@ -37,14 +34,11 @@ class ComputePipeline {
   void dispatch(VkCommandBuffer commands, std::span<const std::byte> push, std::uint32_t groups) const;
 
  private:
-  void destroy();
-
-  const VolkDeviceTable* functions_ = nullptr;
-  VkDevice device_ = VK_NULL_HANDLE;
-  VkDescriptorSetLayout set_layout_ = VK_NULL_HANDLE;
-  VkPipelineLayout layout_ = VK_NULL_HANDLE;
-  VkPipeline pipeline_ = VK_NULL_HANDLE;
-  VkDescriptorPool pool_ = VK_NULL_HANDLE;
+  const Device* device_ = nullptr;
+  DeviceObject<VkDescriptorSetLayout> set_layout_;
+  DeviceObject<VkPipelineLayout> layout_;
+  DeviceObject<VkPipeline> pipeline_;
+  DeviceObject<VkDescriptorPool> pool_;
   VkDescriptorSet set_ = VK_NULL_HANDLE;
   std::vector<std::uint32_t> uniform_;
 };
