@@ -1,0 +1,126 @@
+#include "applique/gpu/renderer.h"
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "gpu/gpu_fixture.h"
+
+namespace applique {
+namespace {
+
+using RendererTest = GpuTest;
+constexpr std::uint16_t full = 65535;
+
+// A square of side 2 around the origin at height z, seen from +z, with the whole texture on it.
+RenderMesh square(const Image* texture, float z = 0) {
+  RenderMesh mesh;
+  mesh.positions = {{-1, -1, z}, {1, -1, z}, {1, 1, z}, {-1, 1, z}};
+  mesh.normals.assign(4, {0, 0, 1});
+  mesh.uvs = {{0, 1}, {1, 1}, {1, 0}, {0, 0}};
+  mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
+  mesh.base_colour = texture;
+  return mesh;
+}
+
+RenderMesh coloured_square(std::array<float, 4> colour, float z) {
+  RenderMesh mesh = square(nullptr, z);
+  mesh.base_colour_factor = colour;
+  return mesh;
+}
+
+// Which of the channels of a pixel is clearly the largest; -1 for none.
+int strongest(const Image& image, int x, int y) {
+  const std::uint16_t* p = image.pixel(x, y);
+  for (int c = 0; c < 3; ++c) {
+    if (p[c] > 1.5 * p[(c + 1) % 3] && p[c] > 1.5 * p[(c + 2) % 3]) return c;
+  }
+  return -1;
+}
+
+Camera front(double zoom = 1) {
+  return orbit({0, 0, 0}, 1.2, 0, 0, zoom);
+}
+constexpr RenderOptions small = {200, 200};
+
+TEST_F(RendererTest, PutsTheTextureTheRightWayUp) {
+  Image texture = make_image(64, 64, {full, full, full, full});
+  const std::array<std::array<std::uint16_t, 4>, 3> colours = {
+      {{full, 0, 0, full}, {0, full, 0, full}, {0, 0, full, full}}};
+  for (int y = 0; y < 64; ++y) {
+    for (int x = 0; x < 64; ++x) {
+      const int quadrant = x / 32 + 2 * (y / 32);  // Red, green / blue, white.
+      if (quadrant < 3) std::copy(colours[quadrant].begin(), colours[quadrant].end(), texture.pixel(x, y));
+    }
+  }
+  const std::vector<RenderMesh> meshes = {square(&texture)};
+  const Image picture = render(device(), meshes, front(), small).value();
+  ASSERT_EQ(picture.width, 200);
+  EXPECT_EQ(strongest(picture, 60, 60), 0);
+  EXPECT_EQ(strongest(picture, 140, 60), 1);
+  EXPECT_EQ(strongest(picture, 60, 140), 2);
+  EXPECT_EQ(strongest(picture, 140, 140), -1);
+}
+
+TEST_F(RendererTest, HidesWhatIsBehind) {
+  for (const bool near_first : {false, true}) {
+    std::vector<RenderMesh> meshes = {coloured_square({1, 0, 0, 1}, -0.1F),
+                                      coloured_square({0, 1, 0, 1}, 0.1F)};
+    if (near_first) std::swap(meshes[0], meshes[1]);
+    EXPECT_EQ(strongest(render(device(), meshes, front(), small).value(), 100, 100), 1);
+  }
+}
+
+TEST_F(RendererTest, ShowsBackFacesOnlyOfDoubleSidedMeshes) {
+  const Camera behind = orbit({0, 0, 0}, 1.2, 180, 0);
+  std::vector<RenderMesh> meshes = {coloured_square({1, 0, 0, 1}, 0)};
+  EXPECT_EQ(strongest(render(device(), meshes, behind, small).value(), 100, 100), -1);
+  meshes[0].double_sided = true;
+  const Image back = render(device(), meshes, behind, small).value();
+  EXPECT_EQ(strongest(back, 100, 100), 0);
+  // Lit as a front face is, with its normal turned over.
+  const Image face = render(device(), meshes, front(), small).value();
+  EXPECT_NEAR(back.pixel(100, 100)[0], face.pixel(100, 100)[0], 600);
+}
+
+TEST_F(RendererTest, BlendsAfterOpaqueAndCutsMasks) {
+  // Given in the wrong order: the blended square is drawn last all the same.
+  std::vector<RenderMesh> meshes = {coloured_square({0, 1, 0, 0.5F}, 0.1F), coloured_square({1, 0, 0, 1}, 0)};
+  meshes[0].alpha_mode = AlphaMode::blend;
+  const Image blended = render(device(), meshes, front(), small).value();
+  EXPECT_GT(blended.pixel(100, 100)[0], 20000);
+  EXPECT_GT(blended.pixel(100, 100)[1], 20000);
+  meshes[0].alpha_mode = AlphaMode::mask;
+  meshes[0].alpha_cutoff = 0.6F;
+  EXPECT_EQ(strongest(render(device(), meshes, front(), small).value(), 100, 100), 0);
+  meshes[0].alpha_cutoff = 0.4F;
+  EXPECT_EQ(strongest(render(device(), meshes, front(), small).value(), 100, 100), 1);
+}
+
+TEST_F(RendererTest, FramesPoints) {
+  const std::vector<Vec3> points = {{2, 3, 4}, {3, 3, 4}, {2, 5, 4}, {2.5, 4, 5}};
+  for (const double aspect : {0.5, 1.0, 2.0}) {
+    const Camera camera = frame_points(points, {1, 0.3, 2}, {0, 1, 0}, aspect, 0.1);
+    const Eigen::Matrix4d matrix = view_projection(camera, aspect, 0.1, 100);
+    double extent = 0;
+    for (const Vec3& point : points) {
+      const Eigen::Vector4d clip = matrix * point.homogeneous();
+      extent = std::max({extent, std::abs(clip.x() / clip.w()), std::abs(clip.y() / clip.w())});
+    }
+    EXPECT_NEAR(extent, 0.8, 1e-9) << aspect;
+  }
+}
+
+TEST_F(RendererTest, DrawsTheBackdropForNoMeshes) {
+  const Image picture = render(device(), {}, front(), small).value();
+  EXPECT_GT(picture.pixel(100, 5)[1], picture.pixel(100, 195)[1]);
+}
+
+TEST_F(RendererTest, RefusesAPictureThatIsTooLarge) {
+  const auto result = render(device(), {}, front(), {1 << 20, 16});
+  ASSERT_FALSE(result);
+  EXPECT_EQ(result.error().code, ErrorCode::device_failed);
+}
+
+}  // namespace
+}  // namespace applique
