@@ -192,8 +192,8 @@ Result<Buffers> read_buffers(const Document& document) {
     if (document.chunk_buffer == i) {
       buffers.bytes[i] = document.binary_chunk;
     } else if (buffer.contains("uri")) {
-      APPLIQUE_TRY(buffers.owned[i],
-                   read_uri(document, buffer["uri"].get<std::string>(), fmt::format("buffer {}", i)));
+      APPLIQUE_TRY(buffers.owned[i], read_uri(document, buffer["uri"].get<std::string>(),
+                                              fmt::format("'{}', buffer {}", document.name, i)));
       buffers.bytes[i] = buffers.owned[i];
     } else {
       continue;
