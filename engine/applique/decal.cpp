@@ -381,8 +381,6 @@ class Solver {
             fmt::format("stopped after {} solves; {:.2f} % of the region is shown", map_.solves, percent));
         break;
     }
-    if (rung_ == EmbeddingRung::blended)
-      add("embedding_blended", "the isometric map folded and was cut short");
     if (rung_ == EmbeddingRung::circle)
       add("embedding_on_circle", "the conformal map folded; a flip-free one took its place");
     if (map_.quality.flipped_plane + map_.quality.flipped_image > 0)

@@ -13,8 +13,9 @@ enum class Energy { isometric, conformal };
 enum class EmbeddingRung {
   conformal,  ///< Boundary-first flattening as asked for.
   isometric,  ///< ARAP as asked for.
-  blended,    ///< ARAP folded; the way from the flip-free map towards it was cut short before the first fold.
-  circle,     ///< The conformal map folded; the flip-free map on a circle took its place.
+  descended,  ///< ARAP folded: blended from the flip-free map towards it before the first fold, and from
+              ///< there down the symmetric Dirichlet energy, which no fold can pass.
+  circle,  ///< The conformal map folded; the flip-free map on a circle took its place.
 };
 
 struct Embedding {
