@@ -1,0 +1,293 @@
+#include "applique/transfer/transfer.h"
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include <gtest/gtest.h>
+
+#include "applique/transfer/raster.h"
+
+namespace applique {
+namespace {
+
+constexpr std::uint16_t full = 65535;
+
+// An opaque image of one linear colour, or whatever `pixel(x, y)` gives.
+template <class PixelAt>
+DecalImage make_decal(int width, int height, PixelAt pixel) {
+  DecalImage image;
+  image.frame = {static_cast<double>(width), static_cast<double>(height)};
+  auto w = static_cast<std::uint32_t>(width), h = static_cast<std::uint32_t>(height);
+  image.levels.push_back({0, w, h});
+  for (int y = 0; y < height; ++y) {
+    for (int x = 0; x < width; ++x) image.texels.push_back(pixel(x, y));
+  }
+  while (w > 1 || h > 1) {  // Sizes are powers of two here.
+    const DecalImage::Level finer = image.levels.back();
+    w = std::max(1u, w / 2), h = std::max(1u, h / 2);
+    image.levels.push_back({static_cast<std::uint32_t>(image.texels.size()), w, h});
+    for (std::uint32_t y = 0; y < h; ++y) {
+      for (std::uint32_t x = 0; x < w; ++x) {
+        std::array<float, 4> mean{};
+        for (std::uint32_t k = 0; k < 4; ++k) {
+          const auto& t = image.texels[finer.offset + (2 * y + k / 2) * finer.width + 2 * x + k % 2];
+          for (int c = 0; c < 4; ++c) mean[c] += 0.25F * t[c];
+        }
+        image.texels.push_back(mean);
+      }
+    }
+  }
+  return image;
+}
+
+DecalImage plain_decal(std::array<float, 4> premultiplied) {
+  return make_decal(64, 64, [&](int, int) { return premultiplied; });
+}
+
+// A face whose corners lie at the texels `t` and the pixels `p`.
+TransferFace face_at(const DecalImage& image, std::array<Texel, 3> t, std::array<Pixel, 3> p) {
+  TransferFace face;
+  face.texel = t;
+  for (int k = 0; k < 3; ++k) face.plane[k] = face.image[k] = image.frame.to_plane(p[k]);
+  return face;
+}
+
+// Two faces that lay the whole image over a rectangle of the texture.
+Transfer rectangle(const DecalImage& image, double x0, double y0, double x1, double y1) {
+  const double w = image.frame.width, h = image.frame.height;
+  Transfer transfer;
+  transfer.image = &image;
+  transfer.faces = {face_at(image, {{{x0, y0}, {x1, y0}, {x1, y1}}}, {{{0, 0}, {w, 0}, {w, h}}}),
+                    face_at(image, {{{x0, y0}, {x1, y1}, {x0, y1}}}, {{{0, 0}, {w, h}, {0, h}}})};
+  return transfer;
+}
+
+// How often the jobs of a plan cover each texel of the region.
+std::vector<int> coverage(const TilePlan& plan) {
+  std::vector<int> count(static_cast<std::size_t>(plan.region.width) * plan.region.height);
+  for (const shader::RasterJob& job : plan.jobs) {
+    for (int y = 0; y < 8; ++y) {
+      for (int x = 0; x < 8; ++x) {
+        bool inside = true;
+        for (int k = 0; k < 3; ++k) inside &= job.a[k] * x + job.b[k] * y + job.c[k] >= 0;
+        const int tx = x + static_cast<int>(job.x), ty = y + static_cast<int>(job.y);
+        if (inside && tx < plan.region.width && ty < plan.region.height) {
+          ++count[static_cast<std::size_t>(ty) * plan.region.width + tx];
+        }
+      }
+    }
+  }
+  return count;
+}
+
+TEST(Raster, FacesAroundAVertexCoverEachTexelOnce) {
+  std::mt19937 random(1);
+  const DecalImage image = plain_decal({1, 1, 1, 1});
+  for (int round = 0; round < 50; ++round) {
+    // A fan over the square [10, 90], its centre often exactly on a texel's centre, so that edges run through
+    // centres.
+    const double shift = round % 2 == 0 ? 0.5 : 0.001 * static_cast<double>(random() % 1000);
+    const Texel centre = {30 + static_cast<double>(random() % 40) + shift,
+                          30 + static_cast<double>(random() % 40) + shift};
+    std::vector<Texel> ring;
+    for (int k = 0; k < 8; ++k) {
+      constexpr double around[8][2] = {{10, 10}, {50.5, 10}, {90, 10}, {90, 50.5},
+                                       {90, 90}, {50.5, 90}, {10, 90}, {10, 50.5}};
+      ring.push_back({around[k][0], around[k][1]});
+    }
+    Transfer transfer;
+    transfer.image = &image;
+    transfer.wrap_u = transfer.wrap_v = WrapMode::clamp;  // No copies in the region's margin.
+    for (int k = 0; k < 8; ++k) {
+      std::array<Texel, 3> corners = {centre, ring[k], ring[(k + 1) % 8]};
+      if (random() % 2) std::swap(corners[0], corners[1]);  // Either orientation.
+      transfer.faces.push_back(face_at(image, corners, {{{0, 0}, {1, 0}, {0, 1}}}));
+    }
+    const TilePlan plan = plan_tile(transfer, 100, 100, {0, 0, 100, 100});
+    const std::vector<int> count = coverage(plan);
+    for (int y = 0; y < plan.region.height; ++y) {
+      for (int x = 0; x < plan.region.width; ++x) {
+        const int tx = x + plan.region.x, ty = y + plan.region.y;
+        const bool inside = tx >= 10 && tx < 90 && ty >= 10 && ty < 90;
+        ASSERT_EQ(count[static_cast<std::size_t>(y) * plan.region.width + x], inside ? 1 : 0)
+            << tx << ", " << ty;
+      }
+    }
+  }
+}
+
+TEST(Raster, FacesFarAwayOrWithoutAnAreaAreLeftOut) {
+  const DecalImage image = plain_decal({1, 1, 1, 1});
+  Transfer transfer;
+  transfer.image = &image;
+  const double nan = std::nan("");
+  transfer.faces = {face_at(image, {{{5, 5}, {20, 20}, {10, 10}}}, {{{0, 0}, {1, 0}, {0, 1}}}),
+                    face_at(image, {{{nan, 5}, {20, 20}, {10, 30}}}, {{{0, 0}, {1, 0}, {0, 1}}}),
+                    face_at(image, {{{0, 0}, {1e7, 0}, {0, 1e7}}}, {{{0, 0}, {1, 0}, {0, 1}}})};
+  EXPECT_TRUE(plan_tile(transfer, 64, 64, {0, 0, 64, 64}).jobs.empty());
+}
+
+TEST(Footprint, FollowsTheSingularValues) {
+  const DecalImage image = plain_decal({1, 1, 1, 1});
+  const auto footprint = [&](double sx, double sy) {
+    const Transfer transfer = rectangle(image, 0, 0, 64 / sx, 64 / sy);
+    const TilePlan plan = plan_tile(transfer, 64, 64, {0, 0, 64, 64});
+    return place_face(transfer, plan.placements[0]).footprint;
+  };
+  EXPECT_EQ(footprint(1, 1).probes, 1);
+  EXPECT_NEAR(footprint(1, 1).level, 0, 1e-9);
+  EXPECT_EQ(footprint(0.25, 0.25).probes, 1);  // Magnified: no more than one.
+  EXPECT_EQ(footprint(0.25, 0.25).level, 0);
+  EXPECT_NEAR(footprint(4, 4).level, 2, 1e-9);
+  EXPECT_EQ(footprint(8, 1).probes, 8);
+  EXPECT_NEAR(footprint(8, 1).level, 0, 1e-9);
+  EXPECT_NEAR(std::abs(footprint(8, 1).axis[0]), 8, 1e-9);
+  EXPECT_NEAR(std::abs(footprint(1, 8).axis[1]), 8, 1e-9);
+  EXPECT_EQ(footprint(64, 2).probes, 16);
+  EXPECT_NEAR(footprint(64, 2).level, 2, 1e-9);
+}
+
+TEST(TransferOnCpu, ReproducesTheImagePixelByPixel) {
+  std::mt19937 random(2);
+  Image expected = make_image(64, 64, {0, 0, 0, full});
+  const DecalImage image = make_decal(64, 64, [&](int x, int y) {
+    std::array<float, 4> texel = {0, 0, 0, 1};
+    for (int c = 0; c < 3; ++c) {
+      expected.pixel(x, y)[c] = static_cast<std::uint16_t>((random() & 255) * 257);
+      texel[c] = static_cast<float>(srgb_to_linear(expected.pixel(x, y)[c] / 65535.0));
+    }
+    return texel;
+  });
+  Image texture = make_image(100, 100, {9 * 257, 80 * 257, 33 * 257, full});
+  const Image before = texture;
+  Transfer transfer = rectangle(image, 20, 30, 84, 94);
+  transfer.gutter = 0;
+  const TransferResult result = transfer_on_cpu(transfer, texture, true);
+  EXPECT_EQ(result.covered_texels, 64U * 64U);
+  EXPECT_EQ(result.gutter_texels, 0U);
+  for (int y = 0; y < 100; ++y) {
+    for (int x = 0; x < 100; ++x) {
+      const bool inside = x >= 20 && x < 84 && y >= 30 && y < 94;
+      for (int c = 0; c < 4; ++c) {
+        ASSERT_EQ(texture.pixel(x, y)[c], inside ? expected.pixel(x - 20, y - 30)[c] : before.pixel(x, y)[c]);
+      }
+    }
+  }
+  for (const auto& sample : result.samples) {
+    ASSERT_NEAR(sample.image.x, sample.x - 20 + 0.5, 1e-9);
+    ASSERT_NEAR(sample.image.y, sample.y - 30 + 0.5, 1e-9);
+  }
+}
+
+TEST(TransferOnCpu, TheGutterGoesOnWhereTheFaceEnds) {
+  // A ramp along x of which the faces show the middle: the gutter shows what lies beyond.
+  const DecalImage image = make_decal(128, 128, [](int x, int) {
+    const auto value = static_cast<float>(srgb_to_linear(x / 255.0));
+    return std::array<float, 4>{value, value, value, 1};
+  });
+  Transfer transfer;
+  transfer.image = &image;
+  transfer.gutter = 6;
+  transfer.faces = {face_at(image, {{{40, 40}, {80, 40}, {80, 80}}}, {{{40, 40}, {80, 40}, {80, 80}}}),
+                    face_at(image, {{{40, 40}, {80, 80}, {40, 80}}}, {{{40, 40}, {80, 80}, {40, 80}}})};
+  Image texture = make_image(128, 128, {full, 0, 0, full});
+  const TransferResult result = transfer_on_cpu(transfer, texture);
+  EXPECT_GT(result.gutter_texels, 4U * 40 * 6);
+  for (int y = 0; y < 128; ++y) {
+    for (int x = 0; x < 128; ++x) {
+      const int dx = std::max({40 - x, x - 79, 0}), dy = std::max({40 - y, y - 79, 0});
+      const bool written = dx * dx + dy * dy <= 36;
+      ASSERT_EQ(texture.pixel(x, y)[1], written ? x * 257 : 0) << x << ", " << y;
+    }
+  }
+}
+
+TEST(TransferOnCpu, TheUpperSheetWinsWhateverTheOrder) {
+  const DecalImage image = make_decal(64, 64, [](int x, int) {
+    return x < 32 ? std::array<float, 4>{1, 0, 0, 1} : std::array<float, 4>{0, 1, 0, 1};
+  });
+  TransferFace red = face_at(image, {{{0, 0}, {32, 0}, {0, 32}}}, {{{4, 4}, {20, 4}, {4, 20}}});
+  TransferFace green = face_at(image, {{{0, 0}, {32, 0}, {0, 32}}}, {{{40, 4}, {56, 4}, {40, 20}}});
+  for (const bool swapped : {false, true}) {
+    red.sheet = 1;
+    Transfer transfer;
+    transfer.image = &image;
+    transfer.faces = swapped ? std::vector{green, red} : std::vector{red, green};
+    Image texture = make_image(32, 32, {0, 0, full, full});
+    transfer_on_cpu(transfer, texture);
+    EXPECT_EQ(texture.pixel(5, 5)[0], full);
+    EXPECT_EQ(texture.pixel(5, 5)[1], 0);
+  }
+}
+
+TEST(TransferOnCpu, LeavesTexelsWithoutColourAlone) {
+  std::mt19937 random(3);
+  Image texture = make_image(64, 64, {});
+  for (std::uint16_t& value : texture.rgba) value = static_cast<std::uint16_t>(random());
+  texture.bits = 16;
+  const Image before = texture;
+  const DecalImage clear = plain_decal({0, 0, 0, 0});
+  transfer_on_cpu(rectangle(clear, 0, 0, 64, 64), texture);
+  EXPECT_EQ(texture.rgba, before.rgba);
+  const DecalImage white = plain_decal({1, 1, 1, 1});
+  Transfer faint = rectangle(white, 0, 0, 64, 64);
+  faint.opacity = 0;
+  transfer_on_cpu(faint, texture);
+  EXPECT_EQ(texture.rgba, before.rgba);
+}
+
+// The colour (linear) of a texture of one colour after a decal of one colour.
+std::array<double, 4> blended(std::array<float, 4> premultiplied, std::array<double, 4> below, BlendMode mode,
+                              bool opaque) {
+  const DecalImage image = plain_decal(premultiplied);
+  std::array<std::uint16_t, 4> stored{};
+  for (int c = 0; c < 4; ++c) {
+    stored[c] =
+        static_cast<std::uint16_t>(std::lround(65535 * (c < 3 ? linear_to_srgb(below[c]) : below[c])));
+  }
+  Image texture = make_image(64, 64, stored);
+  texture.bits = 16;
+  Transfer transfer = rectangle(image, 0, 0, 64, 64);
+  transfer.blend = mode;
+  transfer.opaque = opaque;
+  transfer_on_cpu(transfer, texture);
+  std::array<double, 4> result{};
+  for (int c = 0; c < 4; ++c) {
+    const double value = texture.pixel(32, 32)[c] / 65535.0;
+    result[c] = c < 3 ? srgb_to_linear(value) : value;
+  }
+  return result;
+}
+
+TEST(TransferOnCpu, BlendsInLinearLight) {
+  const std::array<float, 4> half_red = {0.4F, 0, 0, 0.5F};  // Straight red 0.8.
+  EXPECT_NEAR(blended(half_red, {0.2, 0.6, 0, 1}, BlendMode::normal, true)[0], 0.4 + 0.5 * 0.2, 1e-4);
+  EXPECT_NEAR(blended(half_red, {0.2, 0.6, 0, 1}, BlendMode::normal, true)[1], 0.5 * 0.6, 1e-4);
+  EXPECT_NEAR(blended(half_red, {0.2, 0.6, 0, 1}, BlendMode::multiply, true)[0], 0.5 * 0.8 * 0.2 + 0.5 * 0.2,
+              1e-4);
+  EXPECT_NEAR(blended(half_red, {0.2, 0.6, 0, 1}, BlendMode::screen, true)[0],
+              0.5 * (0.8 + 0.2 - 0.16) + 0.5 * 0.2, 1e-4);
+  // Over a clear texel the decal shows its own colour, unless the texture's alpha does not show.
+  EXPECT_NEAR(blended(half_red, {0.2, 0.6, 0, 0}, BlendMode::normal, false)[0], 0.8, 1e-4);
+  EXPECT_NEAR(blended(half_red, {0.2, 0.6, 0, 0}, BlendMode::normal, false)[3], 0.5, 1e-4);
+  EXPECT_NEAR(blended(half_red, {0.2, 0.6, 0, 0}, BlendMode::normal, true)[0], 0.4 + 0.5 * 0.2, 1e-4);
+}
+
+TEST(TransferOnCpu, MinifiesToTheMean) {
+  // A checkerboard of single pixels, four to a texel and more.
+  const DecalImage image = make_decal(256, 256, [](int x, int y) {
+    const float value = (x + y) % 2 ? 1.0F : 0.0F;
+    return std::array<float, 4>{value, value, value, 1};
+  });
+  for (const double side : {64.0, 37.0, 20.0}) {
+    Image texture = make_image(64, 64, {0, 0, 0, full});
+    transfer_on_cpu(rectangle(image, 0, 0, side, side), texture);
+    for (int x = 5; x < 15; ++x) {
+      EXPECT_NEAR(srgb_to_linear(texture.pixel(x, 10)[0] / 65535.0), 0.5, 0.01) << side;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace applique
