@@ -230,7 +230,8 @@ OverlayMesh compact(const Builder& mesh, const ImageFrame& frame, double offset)
       const std::uint32_t v = triangle[k];
       if (index[v] == ~0U) {
         index[v] = static_cast<std::uint32_t>(out.positions.size());
-        const Vec3 normal = mesh.normals[v].normalized();
+        const double length = mesh.normals[v].norm();
+        const Vec3 normal = length > 0 ? Vec3(mesh.normals[v] / length) : Vec3::UnitZ();
         const Pixel pixel = frame.to_pixel(mesh.image[v]);
         out.positions.emplace_back(mesh.positions[v] + offset * normal);
         out.normals.push_back(normal);

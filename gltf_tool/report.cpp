@@ -66,7 +66,7 @@ Json decal_seconds(const SolvedDecal& decal) {
   times.add("solve_grow", solve.grow);
   times.add("solve_embed", solve.embed);
   times.add("solve_warp", solve.warp);
-  times.add("solve_metrics", solve.metrics);
+  times.add("solve_quality", solve.quality);
   return seconds_of(times, total);
 }
 

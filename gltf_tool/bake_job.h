@@ -1,0 +1,39 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "applique/gpu/device.h"
+#include "applique/gpu/gpu_transfer.h"
+
+#include "document.h"
+#include "report.h"
+#include "solve_job.h"
+
+namespace applique {
+
+/// A device with its transfer pipelines: made while the geometry is solved.
+struct GpuBaker {
+  Device device;
+  std::optional<GpuTransfer> transfer;  ///< Always there after create_baker.
+};
+
+/// Errors: no_device, device_failed.
+Result<std::unique_ptr<GpuBaker>> create_baker(const std::string& device_selector);
+
+/// A model with its decals, not yet saved, and what the report says about it.
+struct BakedJob {
+  Document document;
+  std::vector<TextureReport> textures;
+  std::vector<std::optional<TexelDensity>> densities;  ///< By decal; none for overlays.
+  StageTimes times;
+};
+
+/// Puts the decals on the model: bakes each into the base-colour textures under it, or adds it as an overlay.
+/// Adds warnings to the decals: uv_overlap, base_color_factor_tints, low_texel_density, overlay_static.
+/// Errors: uvs_missing, device_failed, and those of load_model_image.
+Result<BakedJob> bake_job(SolvedJob& job, GpuBaker& baker, const StageCallback& on_stage = {});
+
+}  // namespace applique

@@ -1,0 +1,61 @@
+#include "commands/check.h"
+
+#include "output_file.h"
+#include "progress.h"
+#include "report.h"
+#include "solve_job.h"
+
+namespace applique {
+namespace {
+
+nlohmann::ordered_json regions_of(const SolvedJob& job) {
+  nlohmann::ordered_json regions = nlohmann::ordered_json::object();
+  for (const SolvedDecal& decal : job.decals) {
+    auto contour = nlohmann::ordered_json::array();
+    for (const Pixel& corner : decal.region.contour()) contour.push_back({corner.x, corner.y});
+    regions[decal.job.name] = {{"contour", std::move(contour)}};
+  }
+  return regions;
+}
+
+}  // namespace
+
+CLI::App* add_check_command(CLI::App& app, CheckArguments& arguments) {
+  CLI::App* command =
+      add_subcommand(app, "check", "Solve the geometry of a job without baking it",
+                     "  applique check job.json\n"
+                     "  applique check job.json --report report.json --dump-region regions.json");
+  command->add_option("JOB", arguments.job, "The job file")->required();
+  command->add_option("--report", arguments.report, "Write a report (JSON)");
+  command->add_option("--dump-region", arguments.dump_region,
+                      "Write the contour of each decal (JSON), fit for a \"region\" of a job file");
+  return command;
+}
+
+Result<void> run_check(const CheckArguments& arguments, const CommonArguments& common) {
+  const Stopwatch total;
+  if (arguments.report) APPLIQUE_CHECK(check_writable(*arguments.report));
+  if (arguments.dump_region) APPLIQUE_CHECK(check_writable(*arguments.dump_region));
+
+  APPLIQUE_TRY(const Job job, load_job(arguments.job));
+  SolvedJob solved;
+  {
+    Progress progress(!common.quiet);
+    APPLIQUE_TRY(solved, solve_job(job, show_stages(progress, 0, 1)));
+  }
+  log_warnings(solved);
+  log_decals(solved);
+
+  if (arguments.dump_region) APPLIQUE_CHECK(write_json(*arguments.dump_region, regions_of(solved)));
+  if (arguments.report) {
+    ReportInput input;
+    input.command = "check";
+    if (arguments.dump_region) input.region_output = arguments.dump_region->string();
+    input.times = solved.times;
+    input.total_seconds = total.seconds();
+    APPLIQUE_CHECK(write_json(*arguments.report, make_report(solved, input)));
+  }
+  return {};
+}
+
+}  // namespace applique

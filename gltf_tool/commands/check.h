@@ -1,0 +1,26 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+
+#include <CLI/CLI.hpp>
+
+#include "applique/base/error.h"
+
+#include "commands/common.h"
+
+namespace applique {
+
+struct CheckArguments {
+  std::filesystem::path job;
+  std::optional<std::filesystem::path> report;  ///< JSON, report.schema.json.
+  std::optional<std::filesystem::path>
+      dump_region;  ///< JSON: for each decal's name a "region" for a job file.
+};
+
+CLI::App* add_check_command(CLI::App& app, CheckArguments& arguments);
+
+/// Solves the geometry of a job and tells how good it is; needs no Vulkan and changes no model.
+Result<void> run_check(const CheckArguments& arguments, const CommonArguments& common);
+
+}  // namespace applique

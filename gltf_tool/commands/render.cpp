@@ -1,0 +1,100 @@
+#include "commands/render.h"
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+
+#include <fmt/format.h>
+
+#include "model_picture.h"
+#include "output_file.h"
+#include "progress.h"
+#include "solve_job.h"
+
+namespace applique {
+namespace {
+
+constexpr int largest_side = 4096;
+
+/// "1200x900"; a side of 0 if it is nothing of the kind.
+PictureSize parse_size(const std::string& text) {
+  PictureSize size = {0, 0};
+  int length = 0;
+  if (std::sscanf(text.c_str(), "%5dx%5d%n", &size.width, &size.height, &length) != 2 ||
+      static_cast<std::size_t>(length) != text.size())
+    return {0, 0};
+  return size;
+}
+
+const CLI::Validator picture_size(
+    [](std::string& text) {
+      const PictureSize size = parse_size(text);
+      if (std::min(size.width, size.height) >= 1 && std::max(size.width, size.height) <= largest_side)
+        return std::string();
+      return fmt::format("{}: expected WIDTHxHEIGHT in pixels, each from 1 to {}", text, largest_side);
+    },
+    "");
+
+Result<Camera> find_camera(const RenderArguments& arguments, const Model& model, PictureSize size) {
+  if (!arguments.job)
+    return camera_around_model(model, arguments.azimuth, arguments.elevation, arguments.zoom, size);
+  APPLIQUE_TRY(Job job, load_job(*arguments.job));
+  if (!arguments.decal.empty()) {
+    std::erase_if(job.decals, [&](const DecalJob& decal) { return decal.name != arguments.decal; });
+    if (job.decals.empty())
+      return fail(ErrorCode::json_invalid,
+                  fmt::format("{}: has no decal '{}'", arguments.job->string(), arguments.decal));
+  }
+  job.decals.resize(1);
+  APPLIQUE_TRY(const SolvedJob solved, solve_job(job));
+  return camera_on_decal(solved.decals.front(), size);
+}
+
+}  // namespace
+
+CLI::App* add_render_command(CLI::App& app, RenderArguments& arguments) {
+  CLI::App* command =
+      add_subcommand(app, "render", "Render a model with its textures and simple light",
+                     "  applique render model.glb -o front.png\n"
+                     "  applique render model.glb -o side.png --azimuth 60 --elevation 15 --zoom 2\n"
+                     "  applique render out.glb -o decal.png --job job.json --decal tiger");
+  command->add_option("MODEL", arguments.model, "The model, .glb or .gltf")->required();
+  command->add_option("-o,--output", arguments.output, "The picture to write (PNG)")->required();
+  command->add_option("--size", arguments.size, "The picture's size, WIDTHxHEIGHT in pixels")
+      ->capture_default_str()
+      ->check(picture_size);
+  auto* azimuth =
+      command->add_option("--azimuth", arguments.azimuth, "Degrees to the right of the front (+z)")
+          ->capture_default_str();
+  auto* elevation = command->add_option("--elevation", arguments.elevation, "Degrees above the horizon")
+                        ->capture_default_str();
+  auto* zoom = command->add_option("--zoom", arguments.zoom, "1 shows the whole model, more comes closer")
+                   ->capture_default_str()
+                   ->check(CLI::PositiveNumber);
+  auto* job =
+      command->add_option("--job", arguments.job, "Look straight at a decal of this job, the first one")
+          ->excludes(azimuth)
+          ->excludes(elevation)
+          ->excludes(zoom);
+  command->add_option("--decal", arguments.decal, "Look at the decal of this name instead")->needs(job);
+  command->add_option("--device", arguments.device, "The Vulkan device, by index or by a part of its name");
+  return command;
+}
+
+Result<void> run_render(const RenderArguments& arguments, const CommonArguments& common) {
+  APPLIQUE_CHECK(check_writable(arguments.output));
+  const PictureSize size = parse_size(arguments.size);
+  Progress progress(!common.quiet);
+  progress.show("loading the model", 0);
+  APPLIQUE_TRY(const Model model, load_model(arguments.model));
+  APPLIQUE_TRY(const Camera camera, find_camera(arguments, model, size));
+  progress.show("rendering", 0.5);
+  DeviceRequest request;
+  request.selector = arguments.device;
+  APPLIQUE_TRY(const Device device, Device::create(request));
+  APPLIQUE_TRY(const Image picture, render_model(device, model, camera, size));
+  APPLIQUE_TRY(const auto png, encode_png(picture));
+  return write_file(arguments.output, png);
+}
+
+}  // namespace applique

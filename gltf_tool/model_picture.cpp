@@ -1,0 +1,88 @@
+#include "model_picture.h"
+
+#include <algorithm>
+#include <cmath>
+#include <future>
+#include <map>
+#include <utility>
+#include <vector>
+
+#include "applique/gpu/renderer.h"
+
+#include "decal_view.h"
+
+namespace applique {
+namespace {
+
+std::array<float, 3> to_floats(const Vec3& v) {
+  return {static_cast<float>(v.x()), static_cast<float>(v.y()), static_cast<float>(v.z())};
+}
+
+/// The images that the parts show, decoded side by side.
+Result<std::map<std::size_t, Image>> load_images(const Model& model) {
+  std::map<std::size_t, std::future<Result<Image>>> loading;
+  for (const ModelPart& part : model.parts) {
+    if (!part.material || part.uvs.empty()) continue;
+    const auto image = model.materials[*part.material].image;
+    if (image && !loading.contains(*image))
+      loading[*image] =
+          std::async(std::launch::async, [&model, image] { return load_model_image(model, *image); });
+  }
+  std::map<std::size_t, Image> images;
+  for (auto& [index, image] : loading) {
+    APPLIQUE_TRY(images[index], image.get());
+  }
+  return images;
+}
+
+AlphaMode alpha_mode_of(const std::string& name) {
+  if (name == "MASK") return AlphaMode::mask;
+  return name == "BLEND" ? AlphaMode::blend : AlphaMode::opaque;
+}
+
+RenderMesh mesh_of(const Model& model, const ModelPart& part, const std::map<std::size_t, Image>& images) {
+  RenderMesh mesh;
+  for (const Vec3& position : part.positions) mesh.positions.push_back(to_floats(position));
+  for (const Vec3& normal : part.normals) mesh.normals.push_back(to_floats(normal));
+  for (const auto& uv : part.uvs) mesh.uvs.push_back({static_cast<float>(uv[0]), static_cast<float>(uv[1])});
+  mesh.triangles = part.triangles;
+  if (!part.material) return mesh;
+  const ModelMaterial& material = model.materials[*part.material];
+  for (std::size_t c = 0; c < 4; ++c)
+    mesh.base_colour_factor[c] = static_cast<float>(material.base_colour_factor[c]);
+  if (material.image && !part.uvs.empty()) mesh.base_colour = &images.at(*material.image);
+  mesh.alpha_mode = alpha_mode_of(material.alpha_mode);
+  mesh.alpha_cutoff = static_cast<float>(material.alpha_cutoff);
+  mesh.double_sided = material.double_sided;
+  mesh.wrap_u = material.wrap_u;
+  mesh.wrap_v = material.wrap_v;
+  return mesh;
+}
+
+}  // namespace
+
+Camera camera_on_decal(const SolvedDecal& decal, PictureSize size) {
+  const DecalView view = view_of_decal(decal);
+  return frame_points(view.points, view.towards_viewer, view.up,
+                      static_cast<double>(size.width) / size.height);
+}
+
+Camera camera_around_model(const Model& model, double azimuth, double elevation, double zoom,
+                           PictureSize size) {
+  // orbit() fits a sphere into the picture's height; an upright picture is narrower than high.
+  const double aspect = static_cast<double>(size.width) / size.height;
+  const double radius = 0.5 * model.diagonal() / std::min(1.0, aspect);
+  return orbit(0.5 * (model.lower + model.upper), radius, azimuth, elevation, zoom);
+}
+
+Result<Image> render_model(const Device& device, const Model& model, const Camera& camera, PictureSize size) {
+  APPLIQUE_TRY(const auto images, load_images(model));
+  std::vector<RenderMesh> meshes;
+  for (const ModelPart& part : model.parts) meshes.push_back(mesh_of(model, part, images));
+  RenderOptions options;
+  options.width = size.width;
+  options.height = size.height;
+  return render(device, meshes, camera, options);
+}
+
+}  // namespace applique

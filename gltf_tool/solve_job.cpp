@@ -1,0 +1,238 @@
+#include "solve_job.h"
+
+#include <future>
+#include <map>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "applique/region/outline.h"
+#include "applique/surface/surface_query.h"
+
+#include "near_names.h"
+#include "place.h"
+
+namespace applique {
+namespace {
+
+/// The surfaces that the decals of a job use: decals with the same limits share one.
+class SurfaceCache {
+ public:
+  struct Entry {
+    std::shared_ptr<const ModelSurface> surface;
+    std::unique_ptr<SurfaceQuery> query;
+  };
+
+  explicit SurfaceCache(const Model& model) : model_(&model) {}
+
+  Result<const Entry*> find(const DecalJob& decal) {
+    const std::string owner = fmt::format("decal '{}'", decal.name);
+    APPLIQUE_TRY(auto nodes, resolve_references(decal.nodes, model_->document, "nodes", owner));
+    APPLIQUE_TRY(auto materials, resolve_references(decal.materials, model_->document, "materials", owner));
+    auto [place, fresh] = entries_.try_emplace({nodes, materials});
+    Entry& entry = place->second;
+    if (fresh) {
+      entry.surface = std::make_shared<ModelSurface>(build_surface(*model_, nodes, materials));
+      if (entry.surface->mesh.faces.empty())
+        return fail(
+            ErrorCode::feature_place_invalid,
+            owner +
+                ": no triangle of the model lies on the nodes and materials that it names; name others, "
+                "or leave them out");
+      entry.query = std::make_unique<SurfaceQuery>(entry.surface->mesh);
+    }
+    return &entry;
+  }
+
+ private:
+  const Model* model_;
+  std::map<std::pair<std::vector<std::size_t>, std::vector<std::size_t>>, Entry> entries_;
+};
+
+struct LoadedImage {
+  Result<Image> image;
+  double seconds;
+};
+
+std::vector<std::future<LoadedImage>> start_reading_images(const Job& job) {
+  std::vector<std::future<LoadedImage>> images;
+  for (const DecalJob& decal : job.decals)
+    images.push_back(std::async(std::launch::async, [path = decal.image] {
+      const Stopwatch watch;
+      Result<Image> image = read_image(path);
+      return LoadedImage{std::move(image), watch.seconds()};
+    }));
+  return images;
+}
+
+/// Names the decal in an error that comes from a function that does not know it.
+template <class T>
+Result<T> of_decal(const DecalJob& decal, Result<T> result) {
+  if (result || result.error().message.find(fmt::format("'{}'", decal.name)) != std::string::npos)
+    return result;
+  return fail(result.error().code, fmt::format("decal '{}': {}", decal.name, result.error().message));
+}
+
+bool has_transparency(const Image& image) {
+  if (!image.has_alpha()) return false;
+  for (std::size_t i = 3; i < image.rgba.size(); i += 4)
+    if (image.rgba[i] != 0xffff) return true;
+  return false;
+}
+
+Result<std::vector<Pixel>> find_contour(const RegionChoice& choice, const Image& image) {
+  constexpr double default_threshold = 0.5;
+  if (const auto* contour = std::get_if<ContourRegion>(&choice)) return contour->contour;
+  if (const auto* alpha = std::get_if<AlphaRegion>(&choice)) return alpha_outline(image, alpha->threshold);
+  if (std::holds_alternative<AutomaticRegion>(choice) && has_transparency(image))
+    return alpha_outline(image, default_threshold);
+  return rectangle_outline(image);
+}
+
+Result<Region> find_region(const RegionChoice& choice, const Image& image) {
+  APPLIQUE_TRY(const auto contour, find_contour(choice, image));
+  return Region::from_contour(contour, {static_cast<double>(image.width), static_cast<double>(image.height)});
+}
+
+Result<std::optional<LoneFrame>> find_lone_frame(const DecalJob& decal, std::vector<Warning>& warnings) {
+  if (decal.features.size() > 1) {
+    if (decal.size || decal.up)
+      warnings.push_back(
+          {"size_ignored", fmt::format("decal '{}': '{}' is not used, because several features fix "
+                                       "scale and orientation by themselves",
+                                       decal.name, decal.size ? "size" : "up")});
+    return std::nullopt;
+  }
+  if (decal.size && decal.up) return LoneFrame{*decal.size, *decal.up};
+  return fail(
+      ErrorCode::size_missing,
+      fmt::format(
+          "decal '{}': a single feature fixes neither scale nor orientation; give {}, or a second feature",
+          decal.name,
+          decal.size ? "'up' (the direction of the image's upper edge)"
+          : decal.up ? "'size' (the image's width in scene units)"
+                     : "'size' (the image's width in scene units) and 'up' (the direction of its upper "
+                       "edge)"));
+}
+
+Result<void> solve_geometry(const Model& model, SurfaceCache& surfaces, SolvedDecal& decal) {
+  const std::string& name = decal.job.name;
+  Stopwatch watch;
+  APPLIQUE_TRY(decal.region, of_decal(decal.job, find_region(decal.job.region, decal.image)));
+  decal.times.add("region", watch.lap());
+
+  APPLIQUE_TRY(const SurfaceCache::Entry* entry, surfaces.find(decal.job));
+  decal.surface = entry->surface;
+  decal.times.add("surface", watch.lap());
+
+  DecalInput input = {name, decal.region, {}, std::nullopt};
+  APPLIQUE_TRY(input.lone, find_lone_frame(decal.job, decal.warnings));
+  for (std::size_t i = 0; i < decal.job.features.size(); ++i) {
+    const JobFeature& feature = decal.job.features[i];
+    const std::string label =
+        fmt::format("decal '{}', feature {} at ({:.1f}, {:.1f})", name, i, feature.image.x, feature.image.y);
+    APPLIQUE_TRY(const SurfacePoint point,
+                 resolve_place(feature.place, model, *entry->surface, *entry->query, label));
+    input.features.push_back({feature.image, point, feature.depth});
+  }
+  decal.times.add("places", watch.lap());
+
+  SolveOptions options;
+  options.energy = decal.job.energy;
+  APPLIQUE_TRY(decal.map, of_decal(decal.job, solve_decal(entry->surface->mesh, input, options)));
+  decal.features = std::move(input.features);
+  decal.times.add("solve", watch.lap());
+  return {};
+}
+
+void warn_of_coverage(SolvedDecal& decal) {
+  const auto warn = [&](const char* code, const char* reason) {
+    decal.warnings.push_back({code, fmt::format("decal '{}': {:.1f} % of the image lies on the surface: {}",
+                                                decal.job.name, 100 * decal.map.quality.coverage, reason)});
+  };
+  switch (decal.map.status) {
+    case Coverage::covered:
+      break;
+    case Coverage::clipped_by_boundary:
+      warn("clipped_by_boundary", "the surface ends under it");
+      break;
+    case Coverage::clipped_by_cover:
+      warn("clipped_by_cover", "the decal would have to lie on top of itself");
+      break;
+    case Coverage::clipped_closed:
+      warn("clipped_closed", "the surface closes under it");
+      break;
+    case Coverage::not_converged:
+      warn("not_converged", "the growth of the patch did not come to an end");
+      break;
+  }
+}
+
+}  // namespace
+
+Result<std::vector<std::size_t>> resolve_references(const std::vector<Reference>& references,
+                                                    const Document& document, const std::string& array,
+                                                    const std::string& owner) {
+  const auto elements = document.json.value(array, nlohmann::ordered_json::array());
+  std::vector<std::size_t> found;
+  for (const Reference& reference : references) {
+    if (const auto* index = std::get_if<std::size_t>(&reference)) {
+      if (*index >= elements.size())
+        return fail(ErrorCode::feature_place_invalid,
+                    fmt::format("{}: {} {}: the model has {} of them, counted from 0", owner, array, *index,
+                                elements.size()));
+      found.push_back(*index);
+      continue;
+    }
+    const auto& name = std::get<std::string>(reference);
+    const std::size_t before = found.size();
+    std::vector<std::string> names;
+    for (std::size_t i = 0; i < elements.size(); ++i) {
+      const std::string element_name = elements[i].value("name", std::string());
+      if (element_name == name) found.push_back(i);
+      if (!element_name.empty()) names.push_back(element_name);
+    }
+    if (found.size() == before)
+      return fail(ErrorCode::feature_place_invalid,
+                  fmt::format("{}: {}: the model has no '{}', expected {}", owner, array, name,
+                              suggest_names(name, names)));
+  }
+  return found;
+}
+
+Result<SolvedJob> solve_job(const Job& job, const StageCallback& on_stage) {
+  const auto begin_stage = [&](const std::string& stage, double done) {
+    if (on_stage) on_stage(stage, done);
+  };
+  SolvedJob solved;
+  solved.job = job;
+  auto images = start_reading_images(job);
+
+  begin_stage("loading the model", 0);
+  Stopwatch watch;
+  APPLIQUE_TRY(solved.model, load_model(job.model));
+  solved.times.add("load_model", watch.lap());
+
+  SurfaceCache surfaces(solved.model);
+  constexpr double load_share = 0.3;  // of the work, for the progress bar
+  for (std::size_t i = 0; i < job.decals.size(); ++i) {
+    const DecalJob& decal_job = job.decals[i];
+    begin_stage(
+        fmt::format("solving '{}'", decal_job.name),
+        load_share + (1 - load_share) * static_cast<double>(i) / static_cast<double>(job.decals.size()));
+    SolvedDecal decal;
+    decal.job = decal_job;
+    LoadedImage loaded = images[i].get();
+    decal.times.add("load_image", loaded.seconds);
+    solved.times.add("load_images", watch.lap());  // what was waited for
+    APPLIQUE_TRY(decal.image, of_decal(decal_job, std::move(loaded.image)));
+    APPLIQUE_CHECK(solve_geometry(solved.model, surfaces, decal));
+    warn_of_coverage(decal);
+    decal.warnings.insert(decal.warnings.end(), decal.map.warnings.begin(), decal.map.warnings.end());
+    solved.decals.push_back(std::move(decal));
+    solved.times.add("solve", watch.lap());
+  }
+  return solved;
+}
+
+}  // namespace applique

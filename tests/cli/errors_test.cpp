@@ -1,0 +1,194 @@
+// What stops a job: each error is read as a person would read it, with its exit code.
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "cli/command.h"
+#include "cli/small_model.h"
+
+using namespace applique;
+using nlohmann::json;
+
+namespace {
+
+constexpr int image_size = 64;
+
+json feature(double x, double y, double px, double py, double pz = 0) {
+  return {{"image", {x, y}}, {"position", {px, py, pz}}};
+}
+
+/// A folder with a model of two planes side by side, one without texture coordinates behind them, and an
+/// image.
+class ErrorsTest : public testing::Test {
+ protected:
+  void SetUp() override {
+    SmallMesh bare = make_plane("Bare", 4, 0, -3);
+    bare.uvs.clear();
+    write_small_model(folder_ / "model.glb", {make_plane("Left", 8, -2), make_plane("Right", 8, 2), bare},
+                      {{"paint", make_noise(32), {1, 1, 1, 1}}});
+    write_png(folder_ / "image.png", make_noise(image_size));
+  }
+
+  /// A job that can be solved: the image over half of the left plane.
+  static json good_job() {
+    return {
+        {"version", 1},
+        {"model", "model.glb"},
+        {"decals", json::array({{{"name", "crest"},
+                                 {"image", "image.png"},
+                                 {"features", {feature(16, 32, -2.25, 0), feature(48, 32, -1.75, 0)}}}})}};
+  }
+
+  void expect_failure(const json& job, int status, const std::vector<std::string>& sentence_parts,
+                      const std::string& command = "check job.json") {
+    folder_.write("job.json", job);
+    const auto before = folder_.names();
+    const CommandResult result = folder_.run(command);
+    EXPECT_EQ(result.status, status) << result.err;
+    EXPECT_EQ(result.err.find("applique: error: "), 0u) << result.err;
+    for (const std::string& part : sentence_parts)
+      EXPECT_NE(result.err.find(part), std::string::npos) << part << "\nin: " << result.err;
+    EXPECT_EQ(folder_.names(), before) << "a failed run leaves nothing behind";
+  }
+
+  CommandFolder folder_;
+};
+
+TEST_F(ErrorsTest, NoneInTheGoodJob) {
+  folder_.write("job.json", good_job());
+  const CommandResult result = folder_.run("check job.json");
+  EXPECT_EQ(result.status, 0) << result.err;
+  EXPECT_NE(result.err.find("crest: 2 features"), std::string::npos) << result.err;
+  EXPECT_EQ(result.out, "");
+}
+
+TEST_F(ErrorsTest, ContourThatCrossesItselfSaysWhere) {
+  json job = good_job();
+  job["decals"][0]["region"] = {{"contour", {{0, 0}, {64, 64}, {64, 0}, {0, 64}}}};
+  expect_failure(job, 2, {"'crest'", "cross", "(32.0, 32.0)"});
+}
+
+TEST_F(ErrorsTest, FeatureOutsideTheContourSaysByHowMuch) {
+  json job = good_job();
+  job["decals"][0]["region"] = {{"contour", {{0, 0}, {40, 0}, {40, 64}, {0, 64}}}};
+  expect_failure(job, 2, {"'crest'", "feature 1 at (48.0, 32.0)", "outside", "8.0 px"});
+}
+
+TEST_F(ErrorsTest, TwoFeaturesOnOneImagePoint) {
+  json job = good_job();
+  job["decals"][0]["features"][1]["image"] = {16, 32};
+  expect_failure(job, 2, {"'crest'", "feature 0 at (16.0, 32.0)", "feature 1 at (16.0, 32.0)"});
+}
+
+TEST_F(ErrorsTest, TwoFeaturesOnOneSurfacePoint) {
+  json job = good_job();
+  job["decals"][0]["features"][1]["position"] = {-2.25, 0, 0};
+  expect_failure(job, 2, {"'crest'", "feature 0 at (16.0, 32.0)", "feature 1 at (48.0, 32.0)"});
+}
+
+TEST_F(ErrorsTest, FeaturesOnPartsThatAreNotConnected) {
+  json job = good_job();
+  job["decals"][0]["features"][1]["position"] = {2, 0, 0};
+  expect_failure(job, 3,
+                 {"'crest'", "feature 0 at (16.0, 32.0)", "feature 1 at (48.0, 32.0)", "not connected"});
+}
+
+TEST_F(ErrorsTest, MirroredCorrespondences) {
+  json job = good_job();
+  job["decals"][0]["features"] = {feature(16, 16, -1.75, 0.25), feature(48, 16, -2.25, 0.25),
+                                  feature(32, 48, -2, -0.25)};
+  expect_failure(job, 3, {"'crest'", "mirrored"});
+}
+
+TEST_F(ErrorsTest, PositionTooFarFromTheSurface) {
+  json job = good_job();
+  job["decals"][0]["features"][1]["position"] = {-1.75, 0, 1.5};
+  expect_failure(job, 3, {"'crest'", "feature 1 at (48.0, 32.0)", "1.5", "max_distance"});
+  job["decals"][0]["features"][1]["max_distance"] = 2;
+  folder_.write("job.json", job);
+  EXPECT_EQ(folder_.run("check job.json").status, 0);
+}
+
+TEST_F(ErrorsTest, SizeMissingForALoneFeature) {
+  json job = good_job();
+  job["decals"][0]["features"] = json::array({feature(32, 32, -2, 0)});
+  expect_failure(job, 2, {"'crest'", "'size'", "'up'"});
+  job["decals"][0]["size"] = 0.5;
+  expect_failure(job, 2, {"'crest'", "'up'"});
+  job["decals"][0]["up"] = {0, 1, 0};
+  folder_.write("job.json", job);
+  EXPECT_EQ(folder_.run("check job.json").status, 0);
+}
+
+TEST_F(ErrorsTest, UvsMissingNamesTheMeshAndTheWayOut) {
+  json job = good_job();
+  job["decals"][0]["features"] = {feature(16, 32, -0.25, 0, -3), feature(48, 32, 0.25, 0, -3)};
+  expect_failure(job, 3, {"'crest'", "'Bare'", "no texture coordinates", "overlay"},
+                 "bake job.json -o out.glb");
+}
+
+TEST_F(ErrorsTest, UnknownNodeNamesTheNearOne) {
+  json job = good_job();
+  job["decals"][0]["nodes"] = {"left"};
+  expect_failure(job, 2, {"'crest'", "'left'", "'Left'"});
+}
+
+TEST_F(ErrorsTest, SchemaViolationSaysPointerFoundAndExpected) {
+  json job = good_job();
+  job["decals"][0]["opacity"] = 1.7;
+  expect_failure(job, 2, {"job.json: /decals/0/opacity: found 1.7, expected a number from 0 to 1"});
+}
+
+TEST_F(ErrorsTest, UnreadableFilesAreNamed) {
+  expect_failure(good_job(), 2, {"none.json"}, "check none.json");
+  json job = good_job();
+  job["model"] = "none.glb";
+  expect_failure(job, 2, {"none.glb"});
+  job = good_job();
+  job["decals"][0]["image"] = "none.png";
+  expect_failure(job, 2, {"'crest'", "none.png"});
+  job = good_job();
+  job["decals"][0]["image"] = "model.glb";
+  expect_failure(job, 2, {"'crest'", "model.glb"});
+  job = good_job();
+  job["model"] = "image.png";
+  expect_failure(job, 2, {"image.png"});
+}
+
+TEST_F(ErrorsTest, OutputThatCannotBeWritten) {
+  expect_failure(good_job(), 4, {"missing/out.glb", "does not exist"}, "bake job.json -o missing/out.glb");
+  expect_failure(good_job(), 4, {"missing/r.json", "does not exist"},
+                 "check job.json --report missing/r.json");
+  expect_failure(good_job(), 4, {"image.png/out.glb"}, "bake job.json -o image.png/out.glb");
+}
+
+TEST_F(ErrorsTest, OutputOfNoKnownKind) {
+  expect_failure(good_job(), 1, {"out.obj", ".glb", ".gltf"}, "bake job.json -o out.obj");
+}
+
+TEST_F(ErrorsTest, DeviceThatIsNotThere) {
+  expect_failure(good_job(), 5, {"nonsense"}, "bake job.json -o out.glb --device nonsense");
+}
+
+TEST(Usage, WrongUsageIsOne) {
+  const CommandFolder folder;
+  for (const char* arguments :
+       {"", "frobnicate", "bake", "bake job.json", "check", "check job.json --frobnicate", "render model.glb",
+        "check a.json --quiet --verbose", "inspect"}) {
+    const CommandResult result = folder.run(arguments);
+    EXPECT_EQ(result.status, 1) << arguments;
+    EXPECT_NE(result.err, "") << arguments;
+  }
+}
+
+TEST(Usage, HelpHasExamples) {
+  const CommandFolder folder;
+  for (const char* arguments : {"--help", "bake --help", "check --help", "inspect --help", "render --help"}) {
+    const CommandResult result = folder.run(arguments);
+    EXPECT_EQ(result.status, 0) << arguments;
+    EXPECT_NE(result.out.find("Examples:\n  applique "), std::string::npos) << result.out;
+  }
+  EXPECT_EQ(folder.run("--version").out.find("applique "), 0u);
+}
+
+}  // namespace
