@@ -21,6 +21,28 @@ const Eigen::Matrix3d& head_turn() {
   return turn;
 }
 
+/// A skeleton through the given knots, smooth: Catmull-Rom, four pieces between knots.
+std::vector<Knot> smooth_curve(const std::vector<Knot>& knots) {
+  constexpr int pieces = 4;
+  std::vector<Knot> curve;
+  const auto last = static_cast<int>(knots.size()) - 1;
+  const auto at = [&](int i) { return knots[std::clamp(i, 0, last)]; };
+  for (int i = 0; i < last; ++i)
+    for (int piece = 0; piece < pieces; ++piece) {
+      const double t = static_cast<double>(piece) / pieces;
+      const double w[4] = {0.5 * t * (t * (2 - t) - 1), 0.5 * (t * t * (3 * t - 5) + 2),
+                           0.5 * t * (t * (4 - 3 * t) + 1), 0.5 * t * t * (t - 1)};
+      Knot knot{Vec3::Zero(), 0};
+      for (int k = 0; k < 4; ++k) {
+        knot.point += w[k] * at(i - 1 + k).point;
+        knot.radius += w[k] * at(i - 1 + k).radius;
+      }
+      curve.push_back(knot);
+    }
+  curve.push_back(knots.back());
+  return curve;
+}
+
 /// The right side folded onto the left, rounded over `width` so that no crease runs down the middle.
 Vec3 folded(const Vec3& p, double width) {
   return {std::sqrt(p.x() * p.x() + width * width), p.y(), p.z()};
@@ -28,12 +50,13 @@ Vec3 folded(const Vec3& p, double width) {
 
 // --- The head: dimensions in its own frame, x taken as its absolute value. ---
 
-const Vec3 eye_centre(0.305, 0.01, 0.635);
+const Vec3 eye_centre(0.3135, 0.01, 0.635);
 constexpr double eye_radius = 0.165;
 const Vec3 inner_canthus(0.165, -0.015, 0.75);
 const Vec3 outer_canthus(0.462, 0.022, 0.70);
-constexpr double upper_lid_rise = 0.088;
-constexpr double lower_lid_drop = 0.052;
+
+constexpr double upper_lid_rise = 0.076;
+constexpr double lower_lid_drop = 0.044;
 
 /// The point of the lid's arc at t (0 inner canthus, 1 outer), `rise` above the chord's middle, on the sphere
 /// of `radius` about the eye.
@@ -75,61 +98,61 @@ double lid_opening(const Vec3& p) {
 }
 
 double with_eyes(double d, const Vec3& q) {
-  static const auto upper_rim = lid_tube<9>(upper_lid_rise, eye_radius + 0.022, 0.026, 0.0, 1.0);
-  static const auto lower_rim = lid_tube<9>(-lower_lid_drop, eye_radius + 0.012, 0.02, 0.02, 0.98);
-  static const auto crease = lid_tube<9>(0.155, eye_radius + 0.05, 0.02, 0.02, 1.04);
+  static const auto upper_rim = lid_tube<9>(upper_lid_rise, eye_radius + 0.02, 0.025, 0.0, 1.02);
+  static const auto lower_rim = lid_tube<9>(-lower_lid_drop, eye_radius + 0.006, 0.018, 0.02, 0.98);
+  static const auto crease = lid_tube<9>(0.142, eye_radius + 0.045, 0.018, 0.02, 1.06);
   if (sphere(q, eye_centre, 0.32) > 0) return d;
   d = smooth_union(d, sphere(q, eye_centre, eye_radius + 0.022), 0.05);
   d = smooth_difference(d, tube(q, crease), 0.05);
   d = smooth_union(d, tube(q, upper_rim), 0.035);
   d = smooth_union(d, tube(q, lower_rim), 0.035);
-  d = smooth_difference(d, std::max(lid_opening(q), eye_centre.z() - q.z()), 0.03);
-  return smooth_union(d, sphere(q, eye_centre, eye_radius), 0.016);
+  d = smooth_difference(d, std::max(lid_opening(q), eye_centre.z() - q.z()), 0.024);
+  return smooth_union(d, sphere(q, eye_centre, eye_radius), 0.018);
 }
 
 double with_nose(double d, const Vec3& q) {
   if (sphere(q, Vec3(0, -0.2, 0.92), 0.55) > 0) return d;
-  static const std::array<Knot, 4> ridge{Knot{Vec3(0, 0.22, 0.80), 0.085}, Knot{Vec3(0, 0.03, 0.835), 0.068},
-                                         Knot{Vec3(0, -0.2, 0.93), 0.07}, Knot{Vec3(0, -0.37, 1.03), 0.078}};
+  static const auto ridge =
+      smooth_curve({Knot{Vec3(0, 0.22, 0.79), 0.08}, Knot{Vec3(0, 0.03, 0.835), 0.068},
+                    Knot{Vec3(0, -0.2, 0.935), 0.06}, Knot{Vec3(0, -0.37, 1.035), 0.066}});
   d = smooth_union(d, tube(q, ridge), 0.10);
-  d = smooth_union(d, ellipsoid(q, Vec3(0, -0.33, 0.90), Vec3(0.12, 0.16, 0.14)), 0.10);
-  d = smooth_union(d, ellipsoid(q, Vec3(0, -0.385, 1.035), Vec3(0.085, 0.075, 0.09)), 0.06);
-  d = smooth_union(d, ellipsoid(q, Vec3(0.118, -0.415, 0.925), Vec3(0.062, 0.066, 0.085)), 0.045);
-  d = smooth_union(d, round_cone(q, {Vec3(0, -0.44, 1.02), 0.035}, {Vec3(0, -0.5, 0.9), 0.05}), 0.04);
-  d = smooth_difference(d, ellipsoid(q, Vec3(0.068, -0.487, 0.975), Vec3(0.03, 0.045, 0.05)), 0.03);
+  d = smooth_union(d, ellipsoid(q, Vec3(0, -0.33, 0.89), Vec3(0.105, 0.15, 0.13)), 0.10);
+  d = smooth_union(d, ellipsoid(q, Vec3(0, -0.385, 1.035), Vec3(0.068, 0.066, 0.085)), 0.06);
+  d = smooth_union(d, ellipsoid(q, Vec3(0.108, -0.42, 0.925), Vec3(0.056, 0.056, 0.085)), 0.06);
+  d = smooth_union(d, round_cone(q, {Vec3(0, -0.435, 1.03), 0.028}, {Vec3(0, -0.5, 0.9), 0.045}), 0.05);
+  d = smooth_difference(d, ellipsoid(q, Vec3(0.062, -0.487, 0.985), Vec3(0.027, 0.042, 0.052)), 0.025);
   // The fold behind the wing.
-  static const std::array<Knot, 3> fold{Knot{Vec3(0.165, -0.34, 0.93), 0.008},
-                                        Knot{Vec3(0.195, -0.42, 0.90), 0.014},
-                                        Knot{Vec3(0.17, -0.49, 0.90), 0.008}};
+  static const auto fold =
+      smooth_curve({Knot{Vec3(0.15, -0.34, 0.93), 0.008}, Knot{Vec3(0.182, -0.42, 0.90), 0.012},
+                    Knot{Vec3(0.155, -0.49, 0.90), 0.008}});
   return smooth_difference(d, tube(q, fold), 0.05);
 }
 
 double with_mouth(double d, const Vec3& q) {
   if (sphere(q, Vec3(0, -0.7, 0.85), 0.5) > 0) return d;
-  static const std::array<Knot, 4> upper{
-      Knot{Vec3(0, -0.648, 0.945), 0.043}, Knot{Vec3(0.07, -0.637, 0.937), 0.046},
-      Knot{Vec3(0.17, -0.668, 0.872), 0.036}, Knot{Vec3(0.262, -0.70, 0.785), 0.014}};
-  static const std::array<Knot, 4> lower{
-      Knot{Vec3(0, -0.757, 0.915), 0.056}, Knot{Vec3(0.08, -0.755, 0.907), 0.056},
-      Knot{Vec3(0.17, -0.735, 0.855), 0.041}, Knot{Vec3(0.255, -0.71, 0.78), 0.014}};
-  static const std::array<Knot, 5> line{
-      Knot{Vec3(0, -0.700, 0.985), 0.014}, Knot{Vec3(0.06, -0.692, 0.98), 0.014},
-      Knot{Vec3(0.13, -0.697, 0.94), 0.014}, Knot{Vec3(0.21, -0.703, 0.86), 0.014},
-      Knot{Vec3(0.275, -0.703, 0.79), 0.010}};
-  d = smooth_difference(d, round_cone(q, {Vec3(0, -0.52, 0.98), 0.02}, {Vec3(0, -0.585, 0.985), 0.028}),
+  static const auto upper =
+      smooth_curve({Knot{Vec3(0, -0.650, 0.945), 0.043}, Knot{Vec3(0.06, -0.638, 0.940), 0.046},
+                    Knot{Vec3(0.16, -0.668, 0.880), 0.034}, Knot{Vec3(0.25, -0.70, 0.795), 0.012}});
+  static const auto lower =
+      smooth_curve({Knot{Vec3(0, -0.758, 0.918), 0.054}, Knot{Vec3(0.07, -0.756, 0.910), 0.055},
+                    Knot{Vec3(0.16, -0.737, 0.862), 0.040}, Knot{Vec3(0.24, -0.708, 0.795), 0.012}});
+  static const auto line =
+      smooth_curve({Knot{Vec3(0, -0.702, 0.985), 0.013}, Knot{Vec3(0.055, -0.694, 0.980), 0.013},
+                    Knot{Vec3(0.125, -0.699, 0.945), 0.013}, Knot{Vec3(0.20, -0.704, 0.878), 0.012},
+                    Knot{Vec3(0.262, -0.702, 0.822), 0.007}});
+  d = smooth_difference(d, round_cone(q, {Vec3(0, -0.52, 0.985), 0.018}, {Vec3(0, -0.585, 0.99), 0.026}),
                         0.06);
-  d = smooth_union(d, tube(q, upper), 0.035);
-  d = smooth_union(d, tube(q, lower), 0.035);
-  d = smooth_difference(d, tube(q, line), 0.028);
-  return smooth_difference(d, sphere(q, Vec3(0.29, -0.705, 0.80), 0.02), 0.07);
+  d = smooth_union(d, tube(q, upper), 0.032);
+  d = smooth_union(d, tube(q, lower), 0.032);
+  return smooth_difference(d, tube(q, line), 0.03);
 }
 
 double with_ear(double d, const Vec3& q) {
-  static const Vec3 origin(0.765, -0.14, -0.1);
+  static const Vec3 origin(0.735, -0.14, -0.1);
   if (sphere(q, origin, 0.45) > 0) return d;
   static const Eigen::Matrix3d axes = [] {
     Eigen::Matrix3d m;  // rows: towards the back, up, out
-    const Vec3 back = Vec3(0.42, -0.1, -0.88).normalized();
+    const Vec3 back = Vec3(0.36, -0.12, -0.9).normalized();
     const Vec3 out = back.cross(Vec3(0.06, 1, -0.12)).normalized();
     m.row(0) = back;
     m.row(1) = (out.cross(back)).normalized();
@@ -138,47 +161,49 @@ double with_ear(double d, const Vec3& q) {
     return m;
   }();
   const Vec3 e = axes * (q - origin);
-  static const std::array<Knot, 10> helix{
-      Knot{Vec3(0.03, -0.02, 0.0), 0.022},  Knot{Vec3(-0.05, 0.05, 0.02), 0.028},
-      Knot{Vec3(-0.07, 0.14, 0.02), 0.032}, Knot{Vec3(-0.01, 0.215, 0.015), 0.034},
-      Knot{Vec3(0.07, 0.225, 0.01), 0.034}, Knot{Vec3(0.135, 0.16, 0.01), 0.034},
-      Knot{Vec3(0.15, 0.06, 0.01), 0.032},  Knot{Vec3(0.13, -0.05, 0.01), 0.03},
-      Knot{Vec3(0.085, -0.14, 0.01), 0.03}, Knot{Vec3(0.02, -0.2, 0.01), 0.045}};
-  static const std::array<Knot, 4> antihelix{
-      Knot{Vec3(0.03, 0.14, -0.005), 0.028}, Knot{Vec3(0.075, 0.06, 0.005), 0.03},
-      Knot{Vec3(0.065, -0.05, 0.005), 0.03}, Knot{Vec3(0.015, -0.115, 0.005), 0.03}};
-  double ear = ellipsoid(e, Vec3(0.04, 0.02, -0.04), Vec3(0.125, 0.21, 0.04));
-  ear = smooth_union(ear, tube(e, antihelix), 0.03);
-  ear = smooth_union(ear, tube(e, helix), 0.03);
-  ear = smooth_difference(ear, ellipsoid(e, Vec3(-0.005, -0.04, 0.03), Vec3(0.055, 0.075, 0.06)), 0.03);
-  ear = smooth_union(ear, ellipsoid(e, Vec3(-0.07, -0.04, 0.01), Vec3(0.03, 0.045, 0.035)), 0.03);
-  return smooth_union(d, ear, 0.05);
+  static const auto helix =
+      smooth_curve({Knot{Vec3(0.02, -0.02, 0.0), 0.022}, Knot{Vec3(-0.05, 0.05, 0.02), 0.030},
+                    Knot{Vec3(-0.065, 0.14, 0.02), 0.034}, Knot{Vec3(-0.02, 0.205, 0.015), 0.036},
+                    Knot{Vec3(0.055, 0.22, 0.01), 0.037}, Knot{Vec3(0.12, 0.165, 0.008), 0.037},
+                    Knot{Vec3(0.14, 0.07, 0.005), 0.036}, Knot{Vec3(0.125, -0.04, 0.005), 0.035},
+                    Knot{Vec3(0.08, -0.13, 0.008), 0.036}, Knot{Vec3(0.015, -0.195, 0.01), 0.048}});
+  static const auto antihelix =
+      smooth_curve({Knot{Vec3(0.025, 0.13, -0.005), 0.03}, Knot{Vec3(0.065, 0.06, 0.005), 0.032},
+                    Knot{Vec3(0.06, -0.045, 0.005), 0.032}, Knot{Vec3(0.01, -0.11, 0.005), 0.034}});
+  double ear = ellipsoid(e, Vec3(0.035, 0.02, -0.045), Vec3(0.13, 0.215, 0.055));
+  ear = smooth_union(ear, tube(e, antihelix), 0.04);
+  ear = smooth_union(ear, tube(e, helix), 0.035);
+  ear = smooth_difference(ear, ellipsoid(e, Vec3(-0.005, -0.04, 0.04), Vec3(0.05, 0.07, 0.06)), 0.03);
+  ear = smooth_union(ear, ellipsoid(e, Vec3(-0.07, -0.045, 0.01), Vec3(0.03, 0.045, 0.035)), 0.04);
+  return smooth_union(d, ear, 0.06);
 }
 
 double head_distance(const Vec3& p) {
   const Vec3 q = folded(p, 0.02);
-  double d = ellipsoid(q, Vec3(0, 0.28, -0.10), Vec3(0.74, 0.84, 0.93));
-  d = smooth_union(d, ellipsoid(q, Vec3(0, 0.34, 0.20), Vec3(0.60, 0.52, 0.62)), 0.2);  // forehead
+  double d = ellipsoid(q, Vec3(0, 0.27, -0.10), Vec3(0.72, 0.80, 0.92));
+  d = smooth_union(d, ellipsoid(q, Vec3(0, 0.32, 0.20), Vec3(0.59, 0.52, 0.62)), 0.2);  // forehead
   // Face, cheekbones and jaw.
   d = smooth_union(d, ellipsoid(q, Vec3(0, -0.36, 0.38), Vec3(0.50, 0.58, 0.46)), 0.2);
-  d = smooth_union(d, ellipsoid(q, Vec3(0, -0.72, 0.36), Vec3(0.42, 0.40, 0.48)), 0.2);
-  d = smooth_union(d, ellipsoid(q, Vec3(0.40, -0.23, 0.55), Vec3(0.17, 0.13, 0.17)), 0.22);
-  d = smooth_union(d, round_cone(q, {Vec3(0.50, -0.19, 0.48), 0.09}, {Vec3(0.66, -0.1, 0.02), 0.07}), 0.2);
-  static const std::array<Knot, 4> jaw{
-      Knot{Vec3(0.58, -0.15, -0.02), 0.1}, Knot{Vec3(0.50, -0.70, 0.10), 0.12},
-      Knot{Vec3(0.34, -0.93, 0.45), 0.13}, Knot{Vec3(0.10, -1.02, 0.70), 0.13}};
-  d = smooth_union(d, tube(q, jaw, 0.12), 0.24);
-  d = smooth_union(d, ellipsoid(q, Vec3(0.36, -0.52, 0.42), Vec3(0.20, 0.26, 0.28)), 0.2);  // cheek
+  d = smooth_union(d, ellipsoid(q, Vec3(0, -0.70, 0.36), Vec3(0.41, 0.40, 0.48)), 0.2);
+  d = smooth_union(d, ellipsoid(q, Vec3(0.40, -0.22, 0.55), Vec3(0.16, 0.12, 0.17)), 0.24);
+  d = smooth_union(d, round_cone(q, {Vec3(0.48, -0.19, 0.48), 0.08}, {Vec3(0.64, -0.1, 0.02), 0.05}), 0.24);
+  d = smooth_union(d, ellipsoid(q, Vec3(0.42, -0.46, 0.18), Vec3(0.17, 0.40, 0.30)), 0.24);  // masseter
+  static const auto jaw =
+      smooth_curve({Knot{Vec3(0.44, -0.70, 0.06), 0.09}, Knot{Vec3(0.30, -0.92, 0.42), 0.11},
+                    Knot{Vec3(0.08, -1.02, 0.70), 0.12}});
+  d = smooth_union(d, tube(q, jaw), 0.22);
+  d = smooth_union(d, ellipsoid(q, Vec3(0.33, -0.52, 0.46), Vec3(0.20, 0.25, 0.26)), 0.2);  // cheek
   d = smooth_union(d, ellipsoid(q, Vec3(0, -0.67, 0.62), Vec3(0.31, 0.24, 0.29)), 0.16);    // round the mouth
   d = smooth_union(d, ellipsoid(q, Vec3(0, -1.0, 0.755), Vec3(0.17, 0.13, 0.15)), 0.14);    // chin
   // Eye sockets under the brow.
   d = smooth_difference(d, ellipsoid(q, Vec3(0.31, 0.04, 0.93), Vec3(0.20, 0.13, 0.2)), 0.16);
   d = smooth_difference(d, ellipsoid(q, Vec3(0.17, -0.02, 0.93), Vec3(0.07, 0.1, 0.12)), 0.12);
-  static const std::array<Knot, 4> brow{
-      Knot{Vec3(0.07, 0.17, 0.835), 0.05}, Knot{Vec3(0.19, 0.25, 0.835), 0.05},
-      Knot{Vec3(0.34, 0.275, 0.765), 0.048}, Knot{Vec3(0.51, 0.19, 0.61), 0.04}};
-  d = smooth_union(d, tube(q, brow, 0.04), 0.18);
-  d = smooth_difference(d, ellipsoid(q, Vec3(0.80, 0.12, 0.50), Vec3(0.12, 0.25, 0.22)), 0.22);  // temples
+  static const auto brow =
+      smooth_curve({Knot{Vec3(0.07, 0.15, 0.82), 0.045}, Knot{Vec3(0.18, 0.23, 0.825), 0.048},
+                    Knot{Vec3(0.34, 0.262, 0.765), 0.045}, Knot{Vec3(0.49, 0.17, 0.635), 0.036},
+                    Knot{Vec3(0.535, 0.0, 0.55), 0.04}, Knot{Vec3(0.50, -0.17, 0.56), 0.04}});
+  d = smooth_union(d, tube(q, brow), 0.16);
+  d = smooth_difference(d, ellipsoid(q, Vec3(0.85, 0.2, 0.42), Vec3(0.14, 0.26, 0.28)), 0.28);  // temples
   d = with_nose(d, q);
   d = with_mouth(d, q);
   d = with_eyes(d, q);
@@ -193,9 +218,9 @@ double torso_distance(const Vec3& p) {
   d = smooth_union(d, ellipsoid(q, Vec3(0.48, -2.62, 0.12), Vec3(0.52, 0.42, 0.30)), 0.25);  // chest muscles
   d = smooth_union(d, round_cone(q, {Vec3(0.2, -1.55, -0.42), 0.26}, {Vec3(1.25, -2.0, -0.32), 0.24}), 0.3);
   d = smooth_union(d, ellipsoid(q, Vec3(1.36, -2.32, -0.27), Vec3(0.40, 0.52, 0.42)), 0.25);  // deltoid
-  static const std::array<Knot, 4> clavicle{
-      Knot{Vec3(0.13, -2.0, 0.23), 0.075}, Knot{Vec3(0.5, -1.98, 0.22), 0.06},
-      Knot{Vec3(0.9, -1.9, 0.02), 0.06}, Knot{Vec3(1.25, -1.88, -0.2), 0.07}};
+  static const auto clavicle =
+      smooth_curve({Knot{Vec3(0.13, -2.0, 0.23), 0.075}, Knot{Vec3(0.5, -1.98, 0.22), 0.06},
+                    Knot{Vec3(0.9, -1.9, 0.02), 0.06}, Knot{Vec3(1.25, -1.88, -0.2), 0.07}});
   d = smooth_union(d, tube(q, clavicle), 0.16);
   d = smooth_union(d, ellipsoid(q, Vec3(0.72, -2.16, -0.02), Vec3(0.42, 0.3, 0.26)),
                    0.2);                                                  // below the collar bone
@@ -208,17 +233,17 @@ double neck_distance(const Vec3& p) {
   double d = round_cone(q, {Vec3(0, -0.55, -0.22), 0.42}, {Vec3(0, -1.9, -0.32), 0.47});
   d = smooth_union(d, round_cone(q, {Vec3(0, -0.9, 0.18), 0.22}, {Vec3(0, -1.7, 0.05), 0.22}), 0.2);
   d = smooth_union(d, sphere(q, Vec3(0, -1.32, 0.30), 0.07), 0.18);  // larynx
-  static const std::array<Knot, 3> sternomastoid{Knot{Vec3(0.50, -0.45, -0.25), 0.10},
-                                                 Knot{Vec3(0.35, -1.2, 0.0), 0.10},
-                                                 Knot{Vec3(0.09, -1.88, 0.22), 0.07}};
-  return smooth_union(d, tube(q, sternomastoid), 0.11);
+  static const auto sternomastoid =
+      smooth_curve({Knot{Vec3(0.46, -0.42, -0.28), 0.08}, Knot{Vec3(0.35, -1.2, 0.0), 0.10},
+                    Knot{Vec3(0.09, -1.88, 0.22), 0.07}});
+  return smooth_union(d, tube(q, sternomastoid), 0.13);
 }
 
 double plinth_distance(const Vec3& p) {
-  double d = drum(p, 0.74, -3.86, -3.70, 0.02);
-  d = smooth_union(d, drum(p, 0.66, -3.72, -3.52, 0.1), 0.03);
-  d = smooth_union(d, drum(p, 0.36, -3.6, -2.9, 0.02), 0.22);
-  return smooth_union(d, drum(p, 0.45, -3.27, -3.17, 0.05), 0.04);
+  double d = drum(p, 0.74, -3.86, -3.70, 0.045);
+  d = smooth_union(d, drum(p, 0.655, -3.72, -3.52, 0.095), 0.05);
+  d = smooth_union(d, drum(p, 0.36, -3.6, -2.9, 0.02), 0.25);
+  return smooth_union(d, drum(p, 0.46, -3.27, -3.15, 0.058), 0.06);
 }
 
 /// How much of the head's turn a height takes part in.
@@ -242,11 +267,22 @@ Vec3 head_to_scene(const Vec3& p) {
 double bust_distance(const Vec3& scene) {
   const Vec3 p = scene - head_origin;
   const Vec3 turned = unturned(p);
+  constexpr double blend = 0.16;
+  // Head above, body below: where the one is surely farther than the blend reaches, it is left out.
+  constexpr double body_top = -0.1;
+  constexpr double head_bottom = -1.25;
+  double head = 0;
+  if (p.y() > body_top) {
+    head = head_distance(turned);
+    if (p.y() - body_top > head + blend) return head;
+  }
   double d = smooth_union(torso_distance(p - Vec3(0, 0.12, 0)), neck_distance(turned), 0.22);
   // The cut of the bust: a rounded lower edge, as of a classical bust.
   d = smooth_intersection(d, ellipsoid(p, Vec3(0, -1.7, -0.2), Vec3(1.62, 1.42, 1.6)), 0.08);
   d = smooth_union(d, plinth_distance(p - Vec3(0, 0, -0.2)), 0.12);
-  return smooth_union(d, head_distance(turned), 0.16);
+  if (head_bottom - p.y() > d + blend) return d;
+  if (p.y() <= body_top) head = head_distance(turned);
+  return smooth_union(d, head, blend);
 }
 
 std::vector<Landmark> bust_landmarks() {

@@ -42,12 +42,6 @@ double signed_area(const Vector2d& a, const Vector2d& b, const Vector2d& c) {
   return 0.5 * (ab.x() * ac.y() - ab.y() * ac.x());
 }
 
-bool flips(const FlatChart& chart, const std::vector<Vector2d>& uvs) {
-  for (const Triangle& t : chart.triangles)
-    if (signed_area(uvs[t[0]], uvs[t[1]], uvs[t[2]]) <= 0) return true;
-  return false;
-}
-
 /// Tutte's embedding over a circle with the chart's own perimeter, uniform weights.
 std::vector<Vector2d> tutte(const FlatChart& chart, const std::vector<std::uint32_t>& loop) {
   const auto n = static_cast<int>(chart.positions.size());
@@ -156,6 +150,39 @@ std::vector<Vector2d> as_rigid_as_possible(const FlatChart& chart, std::vector<V
   return uvs;
 }
 
+/// Moves the vertices around flipped triangles to the means of their neighbours, in areas that grow a ring
+/// every few rounds, until nothing is flipped. False when it stays folded, as where the border itself turns
+/// over.
+bool unfold(FlatChart& chart, const std::vector<std::uint32_t>& loop) {
+  std::vector<std::vector<std::uint32_t>> neighbours(chart.positions.size());
+  for (const Triangle& t : chart.triangles)
+    for (int i = 0; i < 3; ++i) neighbours[t[i]].push_back(t[(i + 1) % 3]);
+  for (const std::uint32_t v : loop) neighbours[v].clear();  // the border stays
+  std::vector<bool> moves(chart.positions.size(), false);
+  for (int round = 0; round < 100; ++round) {
+    bool folded = false;
+    for (const Triangle& t : chart.triangles)
+      if (signed_area(chart.uvs[t[0]], chart.uvs[t[1]], chart.uvs[t[2]]) <= 0) {
+        folded = true;
+        for (const std::uint32_t v : t) moves[v] = true;
+      }
+    if (!folded) return true;
+    if (round % 5 == 4) {
+      const std::vector<bool> before = moves;
+      for (std::size_t v = 0; v < neighbours.size(); ++v)
+        if (before[v])
+          for (const std::uint32_t n : neighbours[v]) moves[n] = true;
+    }
+    for (std::size_t v = 0; v < neighbours.size(); ++v) {
+      if (!moves[v] || neighbours[v].empty()) continue;
+      Vector2d sum = Vector2d::Zero();
+      for (const std::uint32_t n : neighbours[v]) sum += chart.uvs[n];
+      chart.uvs[v] = sum / static_cast<double>(neighbours[v].size());
+    }
+  }
+  return false;
+}
+
 }  // namespace
 
 Result<void> flatten(FlatChart& chart) {
@@ -169,18 +196,9 @@ Result<void> flatten(FlatChart& chart) {
     return fail(ErrorCode::not_solved,
                 fmt::format("the chart is not a disc (Euler characteristic {}, {} triangles)", euler,
                             chart.triangles.size()));
-  const std::vector<Vector2d> safe = tutte(chart, loop);
-  const std::vector<Vector2d> rigid = as_rigid_as_possible(chart, safe, 120);
-  // Both maps turn counter-clockwise; the blend goes as far towards the rigid one as nothing flips.
-  for (double share = 1; share >= 0; share -= 0.05) {
-    chart.uvs.clear();
-    for (std::size_t v = 0; v < safe.size(); ++v)
-      chart.uvs.push_back((1 - share) * safe[v] + share * rigid[v]);
-    if (!flips(chart, chart.uvs)) {
-      return {};
-    }
-  }
-  return fail(ErrorCode::not_solved, "the chart folds over itself");
+  chart.uvs = as_rigid_as_possible(chart, tutte(chart, loop), 80);
+  if (!unfold(chart, loop)) return fail(ErrorCode::not_solved, "the chart folds over itself");
+  return {};
 }
 
 }  // namespace applique::assets

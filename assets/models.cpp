@@ -7,6 +7,7 @@
 #include "bust.h"
 #include "parallel.h"
 #include "polygonise.h"
+#include "remesh.h"
 
 namespace applique::assets {
 namespace {
@@ -23,14 +24,16 @@ Colour marble(const Vec3& position, const Vec3& normal, double open) {
                                              fractal_noise(1.3 * position + Vec3(7, 3, 1), 3),
                                              fractal_noise(1.3 * position + Vec3(2, 9, 4), 3));
   const double clouds = fractal_noise(1.1 * warped, 4);
-  const double vein = std::max(0.0, 1 - 16 * std::abs(noise(0.9 * warped)));
-  const double fine_vein = std::max(0.0, 1 - 22 * std::abs(noise(2.1 * warped + Vec3(4, 4, 4))));
+  // Veins fade in and out, so that they do not read as contour lines.
+  const double presence = std::clamp(0.2 + 1.6 * noise(0.8 * position + Vec3(11, 5, 3)), 0.0, 1.0);
+  const double vein = std::max(0.0, 1 - 14 * std::abs(noise(0.75 * warped)));
+  const double smear = std::max(0.0, 1 - 3.5 * std::abs(noise(0.75 * warped)));
   const double grain = noise(55 * position);
-  Colour c = blend(Colour(0.905, 0.875, 0.83), Colour(0.83, 0.79, 0.74), 0.5 + 0.7 * clouds);
-  c = blend(c, Colour(0.60, 0.56, 0.53), 0.30 * vein * vein + 0.16 * fine_vein * fine_vein);
+  Colour c = blend(Colour(0.905, 0.875, 0.83), Colour(0.82, 0.785, 0.745), 0.5 + 0.8 * clouds);
+  c = blend(c, Colour(0.62, 0.59, 0.57), presence * (0.34 * vein * vein + 0.16 * smear * smear));
   c *= 1 + 0.012 * grain;
   // Dust settles where the surface is hidden, and a little where it looks up.
-  c = blend(c, Colour(0.44, 0.35, 0.28), 0.95 * (1 - open));
+  c = blend(c, Colour(0.44, 0.35, 0.28), 0.8 * (1 - open));
   return blend(c, Colour(0.80, 0.74, 0.66), 0.18 * std::max(normal.y(), 0.0));
 }
 
@@ -51,10 +54,15 @@ Mesh make_bust_mesh() {
   options.low = Vec3(-1.9, -0.1, -1.4);
   options.high = Vec3(1.9, 5.1, 1.3);
   options.focus = head_to_scene(Vec3(0, -0.25, 0.8));
-  options.focus_radius = 0.4;
-  options.fine = 0.024;
-  options.coarse = 0.115;
-  return polygonise(bust_distance, options);
+  options.focus_radius = 0.7;
+  options.fine = 0.03;
+  options.coarse = 0.1;
+  options.smoothing = 2;
+  RemeshOptions edges;
+  edges.finest = [](const Vec3& p) { return p.y() < 2 ? 0.04 : 0.012; };
+  edges.coarsest = 0.085;
+  edges.fineness = 0.36;
+  return remesh(polygonise(bust_distance, options), bust_distance, edges);
 }
 
 Result<Model> make_bust(int texture_size) {

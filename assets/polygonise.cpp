@@ -131,12 +131,11 @@ std::vector<std::vector<std::uint32_t>> neighbours_of(
 }  // namespace
 
 Vec3 field_normal(const DistanceField& field, const Vec3& p) {
+  // Differences along the diagonals of a tetrahedron.
   constexpr double step = 1e-4;
-  Vec3 gradient;
-  for (int axis = 0; axis < 3; ++axis) {
-    const Vec3 offset = step * Vec3::Unit(axis);
-    gradient[axis] = field(p + offset) - field(p - offset);
-  }
+  static const Vec3 corners[4] = {{1, 1, 1}, {1, -1, -1}, {-1, 1, -1}, {-1, -1, 1}};
+  Vec3 gradient = Vec3::Zero();
+  for (const Vec3& corner : corners) gradient += field(p + step * corner) * corner;
   const double length = gradient.norm();
   return length > 0 ? Vec3(gradient / length) : Vec3::UnitY();
 }

@@ -25,7 +25,7 @@ struct PolygoniseOptions {
 /// between. Normals are the field's gradient.
 Mesh polygonise(const DistanceField& field, const PolygoniseOptions& options);
 
-/// The unit gradient of `field` by central differences.
+/// The unit gradient of `field` by finite differences.
 Vec3 field_normal(const DistanceField& field, const Vec3& p);
 
 /// How open the surface is to the sky at `p`: 1 open, towards 0 in cavities; from the field along the normal

@@ -29,10 +29,10 @@ double round_cone(const Vec3& p, const Knot& a, const Knot& b) {
   return (std::sqrt(x2 * slant2 / length2) + y * narrowing) / length2 - a.radius;
 }
 
-double tube(const Vec3& p, std::span<const Knot> knots, double k) {
+double tube(const Vec3& p, std::span<const Knot> knots) {
   double distance = std::numeric_limits<double>::max();
   for (std::size_t i = 0; i + 1 < knots.size(); ++i)
-    distance = smooth_union(distance, round_cone(p, knots[i], knots[i + 1]), k);
+    distance = std::min(distance, round_cone(p, knots[i], knots[i + 1]));
   return distance;
 }
 

@@ -48,8 +48,8 @@ double ellipsoid(const Vec3& p, const Vec3& centre, const Vec3& radii);
 /// The hull of two spheres.
 double round_cone(const Vec3& p, const Knot& a, const Knot& b);
 
-/// Round cones along the knots, united with fillets of `k` at the bends.
-double tube(const Vec3& p, std::span<const Knot> knots, double k = 0.01);
+/// Round cones along the knots.
+double tube(const Vec3& p, std::span<const Knot> knots);
 
 /// A disc of the given radius around the y axis, from `low` to `high`, with its rims rounded.
 double drum(const Vec3& p, double radius, double low, double high, double rounding);
