@@ -74,7 +74,7 @@ TEST(Coverage, PolygonsMayReachBeyondTheImage) {
 TEST(Coverage, BandsAreRowsOfTheWhole) {
   const auto polygon = disc(20, 25, 17.3, 37);
   const auto whole = polygon_coverage(polygon, 50, 0, 60), band = polygon_coverage(polygon, 50, 13, 40);
-  for (std::size_t i = 0; i < band.size(); ++i) EXPECT_NEAR(band[i], whole[50 * 13 + i], 1e-6);
+  for (std::size_t i = 0; i < band.size(); ++i) EXPECT_NEAR(band[i], whole[std::size_t{50} * 13 + i], 1e-6);
 }
 
 TEST(DecalImage, SrgbGoesBothWays) {

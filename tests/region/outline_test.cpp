@@ -168,7 +168,7 @@ RC_GTEST_PROP(Outline, RandomMasks, ()) {
   const int smoothing = *rc::gen::inRange(0, 4);
   std::mt19937 random(*rc::gen::arbitrary<unsigned>());
   std::uniform_real_distribution<double> uniform(0, 1);
-  std::vector<double> noise(width * height);
+  std::vector<double> noise(static_cast<std::size_t>(width) * height);
   for (double& value : noise) value = uniform(random);
   Image image = blank(width, height);
   bool any = false;

@@ -63,13 +63,14 @@ void halve(const Texel* in, const DecalImage::Level& fine, const DecalImage::Lev
       const Texel* above = in + std::size_t{2} * y * fine.width;
       const Texel* below = 2 * y + 1 < fine.height ? above + fine.width : nullptr;
       for (std::uint32_t x = 0; x < coarse.width; ++x) {
-        const bool pair = 2 * x + 1 < fine.width;
+        const std::size_t left = std::size_t{2} * x;
+        const bool pair = left + 1 < fine.width;
         Texel& mean = out[std::size_t{y} * coarse.width + x];
         for (std::size_t k = 0; k < 4; ++k) {
-          float sum = above[2 * x][k];
-          if (pair) sum += above[2 * x + 1][k];
-          if (below) sum += below[2 * x][k];
-          if (below && pair) sum += below[2 * x + 1][k];
+          float sum = above[left][k];
+          if (pair) sum += above[left + 1][k];
+          if (below) sum += below[left][k];
+          if (below && pair) sum += below[left + 1][k];
           mean[k] = 0.25F * sum;
         }
       }
