@@ -22,9 +22,10 @@ layout(std430, set = 0, binding = 6) buffer Outcome {
   uint padding;
   vec2 samples[];
 };
+layout(std430, set = 0, binding = 8) readonly buffer Points { vec2 points[]; };  // Of refined faces, pixels.
 // Pairs as (i, j), then by stage the features' positions, then by stage the pairs' (lambda, offset).
 #ifdef LARGE_WARP
-layout(std430, set = 0, binding = 8) readonly buffer LargeWarp { vec4 warp_table[]; };
+layout(std430, set = 0, binding = 9) readonly buffer LargeWarp { vec4 warp_table[]; };
 #endif
 layout(std140, set = 0, binding = 7) uniform Tables {
   uvec4 levels[max_levels];  // Offset in `decal`, width, height.
@@ -79,6 +80,21 @@ vec2 warp(vec2 p) {
     p += h / 6.0 * sum;
   }
   return p;
+}
+
+// Between the points of a refined face's grid: `place` in its steps. Beyond the face, its outermost cells go on.
+vec2 refined(uint first, int cells, vec2 place) {
+  int j = clamp(int(floor(place.y)), 0, cells - 1);
+  int i = clamp(int(floor(place.x)), 0, cells - 1 - j);
+  vec2 f = place - vec2(i, j);
+  uint row = first + uint(j * (2 * cells + 3 - j) / 2 + i), next = row + uint(cells + 1 - j);
+  vec2 along = points[row + 1u], across = points[next];
+  if (f.x + f.y > 1.0 && i + j < cells - 1) {
+    vec2 corner = points[next + 1u];
+    return corner + (1.0 - f.x) * (across - corner) + (1.0 - f.y) * (along - corner);
+  }
+  vec2 corner = points[row];
+  return corner + f.x * (along - corner) + f.y * (across - corner);
 }
 
 // Trilinear probes along the footprint's longer axis. The place is `pixel + rest`; transparent outside the image.
@@ -166,6 +182,7 @@ void main() {
   if (has_warp && (face.flags & face_warped) != 0u) {
     place = constants.half_size + vec2(1.0, -1.0) * constants.pixels_per_unit * warp(place);
   }
+  if (face.flags >= face_cells) place = refined(face.first_point, int(face.flags / face_cells), place);
   int index = work.y * constants.work_size.x + work.x;
   if (constants.keep_samples != 0u && seed == texel) samples[index] = vec2(face.pixel) + place;
 

@@ -27,6 +27,7 @@ APPLIQUE_CONST uint warp_table_capacity = 992u;  // vec4s; with the levels just 
 
 APPLIQUE_CONST uint face_warped = 1u;   // `value` is a plane point that the warp carries to the image.
 APPLIQUE_CONST uint face_clamped = 2u;  // Too thin to extend: its gutter repeats its nearest texel.
+APPLIQUE_CONST uint face_cells = 4u;    // Times the cells along a side of a refined face: `value` is a place in its grid.
 
 APPLIQUE_CONST uint no_texel = 0x7fffffffu;  // Nearest pass: no owned texel in reach along the row.
 
@@ -41,7 +42,7 @@ struct RasterJob {
 };
 
 // Where a face takes the texels: value + dx * (x - texel.x) + dy * (y - texel.y), in pixels relative to `pixel` or,
-// where warped, in the plane.
+// where warped, in the plane, or, where refined, in steps of its grid.
 struct FaceMap {
   ivec2 texel;
   ivec2 pixel;
@@ -52,7 +53,7 @@ struct FaceMap {
   float level;
   uint probes;
   uint flags;
-  uint padding;
+  uint first_point;  // Of the grid, where refined.
 };
 
 struct TransferConstants {

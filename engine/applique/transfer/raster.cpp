@@ -321,7 +321,7 @@ TilePlan plan_tile(const Transfer& transfer, int width, int height, const TexelR
   return plan;
 }
 
-PlacedFace place_face(const Transfer& transfer, const Placement& placement) {
+PlacedFace place_face(const Transfer& transfer, const Placement& placement, int cells) {
   const TransferFace& face = transfer.faces[placement.face];
   const ImageFrame& frame = transfer.image->frame;
   PlacedFace placed;
@@ -343,7 +343,10 @@ PlacedFace place_face(const Transfer& transfer, const Placement& placement) {
   const AffineMap to_pixels = affine_map(corners, pixels);
   placed.footprint = footprint_of(to_pixels, transfer.image->levels.size());
   placed.warped = !face.linear && transfer.warp && transfer.warp->steps > 0;
-  placed.map = placed.warped ? affine_map(corners, plane) : to_pixels;
+  const double n = cells;
+  placed.map = cells > 0       ? affine_map(corners, {{{0, 0}, {n, 0}, {0, n}}})
+               : placed.warped ? affine_map(corners, plane)
+                               : to_pixels;
   placed.clamped = std::abs(triangle_area2(corners)) < longest;
   return placed;
 }

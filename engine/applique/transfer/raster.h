@@ -62,11 +62,14 @@ struct Footprint {
 
 /// All that both twins derive from a placement.
 struct PlacedFace {
-  AffineMap map;  ///< To the plane where the face needs the warp, to pixels where it is linear.
+  /// To the plane where the face needs the warp, or, where it is refined, to steps of its grid; else to
+  /// pixels.
+  AffineMap map;
   Footprint footprint;
   bool warped = false;
   bool clamped = false;  ///< Thinner than a texel: its gutter repeats its nearest texel, it is not extended.
 };
-PlacedFace place_face(const Transfer& transfer, const Placement& placement);
+/// `cells`: as RefinedFace::cells; 0 for a face that is not refined.
+PlacedFace place_face(const Transfer& transfer, const Placement& placement, int cells = 0);
 
 }  // namespace applique

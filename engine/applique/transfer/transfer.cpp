@@ -1,12 +1,11 @@
 #include "applique/transfer/transfer.h"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
-#include <functional>
-#include <thread>
 
+#include "applique/base/parallel.h"
 #include "applique/transfer/raster.h"
+#include "applique/transfer/refine.h"
 
 namespace applique {
 namespace {
@@ -132,19 +131,6 @@ void blend_over(std::uint16_t* texel, const Colour& source, const Transfer& tran
   }
 }
 
-// Runs `work(i)` for i in [0, count) on all cores.
-void parallel_for(int count, const std::function<void(int)>& work) {
-  const int threads = std::clamp(static_cast<int>(std::thread::hardware_concurrency()), 1, 64);
-  std::atomic<int> next = 0;
-  const auto run = [&] {
-    for (int i = next++; i < count; i = next++) work(i);
-  };
-  std::vector<std::thread> pool;
-  for (int i = 1; i < std::min(threads, count); ++i) pool.emplace_back(run);
-  run();
-  for (std::thread& thread : pool) thread.join();
-}
-
 }  // namespace
 
 TransferResult transfer_on_cpu(const Transfer& transfer, Image& texture, bool keep_samples) {
@@ -161,9 +147,12 @@ TransferResult transfer_on_cpu(const Transfer& transfer, Image& texture, bool ke
   cover(plan.foreign_jobs, ownership);
   parallel_for(region.height, [&](int y) { find_nearest_in_row(y, gutter, ownership); });
 
+  const std::vector<RefinedFace> refined = refine_faces(transfer);
   std::vector<PlacedFace> faces;
   faces.reserve(plan.placements.size());
-  for (const Placement& placement : plan.placements) faces.push_back(place_face(transfer, placement));
+  for (const Placement& placement : plan.placements) {
+    faces.push_back(place_face(transfer, placement, refined[placement.face].cells));
+  }
 
   std::vector<TransferResult> rows(static_cast<std::size_t>(work.height));
   parallel_for(work.height, [&](int row) {
@@ -185,8 +174,11 @@ TransferResult transfer_on_cpu(const Transfer& transfer, Image& texture, bool ke
 
       const PlacedFace& face = faces[key - 1];
       const auto place = face.clamped ? face.map.at(seed[0], seed[1]) : face.map.at(x, y);
-      const Pixel pixel = face.warped ? transfer.image->frame.to_pixel((*transfer.warp)({place[0], place[1]}))
-                                      : Pixel{place[0], place[1]};
+      const RefinedFace& grid = refined[plan.placements[key - 1].face];
+      const Pixel pixel = grid.cells > 0 ? grid.at(place[0], place[1])
+                          : face.warped
+                              ? transfer.image->frame.to_pixel((*transfer.warp)({place[0], place[1]}))
+                              : Pixel{place[0], place[1]};
       if (keep_samples && !outside) {
         result.samples.push_back(
             {static_cast<std::uint32_t>(column + work.x), static_cast<std::uint32_t>(row + work.y), pixel});

@@ -1,0 +1,100 @@
+#include "applique/transfer/refine.h"
+
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+#include <utility>
+
+#include "applique/base/parallel.h"
+
+namespace applique {
+namespace {
+
+constexpr double coarse_tolerance = 0.04;  // Pixels.
+constexpr int most_cells = 64;
+
+std::size_t point_count(int cells) {
+  return static_cast<std::size_t>(cells + 1) * (cells + 2) / 2;
+}
+
+// The grid of twice as many cells: the points that there are, and the warp at the new ones.
+std::vector<Pixel> doubled(const Transfer& transfer, const TransferFace& face, int cells,
+                           const std::vector<Pixel>& points) {
+  const int fine = 2 * cells;
+  std::vector<Pixel> result;
+  result.reserve(point_count(fine));
+  for (int j = 0; j <= fine; ++j) {
+    for (int i = 0; i + j <= fine; ++i) {
+      if (i % 2 == 0 && j % 2 == 0) {
+        result.push_back(points[RefinedFace::index(cells, i / 2, j / 2)]);
+        continue;
+      }
+      const double u = static_cast<double>(i) / fine, v = static_cast<double>(j) / fine;
+      const Vec2 p =
+          face.plane[0] + u * (face.plane[1] - face.plane[0]) + v * (face.plane[2] - face.plane[0]);
+      result.push_back(transfer.image->frame.to_pixel((*transfer.warp)(p)));
+    }
+  }
+  return result;
+}
+
+// Largest distance of the new points of a doubled grid from the middles of the edges that they lie on.
+double deviation(int fine, const std::vector<Pixel>& points) {
+  double largest = 0;
+  for (int j = 0; j <= fine; ++j) {
+    for (int i = 0; i + j <= fine; ++i) {
+      if (i % 2 == 0 && j % 2 == 0) continue;
+      // The edge runs along i, along j, or across.
+      const int di = i % 2, dj = i % 2 == 0 ? 1 : -(j % 2);
+      const Pixel &a = points[RefinedFace::index(fine, i - di, j - dj)],
+                  &b = points[RefinedFace::index(fine, i + di, j + dj)],
+                  &m = points[RefinedFace::index(fine, i, j)];
+      largest = std::max(largest, std::hypot(m.x - 0.5 * (a.x + b.x), m.y - 0.5 * (a.y + b.y)));
+    }
+  }
+  return largest;
+}
+
+RefinedFace refine_face(const Transfer& transfer, const TransferFace& face) {
+  const auto& t = face.texel;
+  const double texels =
+      0.5 * std::abs((t[1][0] - t[0][0]) * (t[2][1] - t[0][1]) - (t[1][1] - t[0][1]) * (t[2][0] - t[0][0]));
+  RefinedFace refined;
+  for (const int corner : {0, 1, 2}) {
+    refined.points.push_back(transfer.image->frame.to_pixel((*transfer.warp)(face.plane[corner])));
+  }
+  for (int cells = 1; cells < most_cells && static_cast<double>(point_count(2 * cells)) < texels;
+       cells *= 2) {
+    refined.points = doubled(transfer, face, cells, refined.points);
+    if (deviation(2 * cells, refined.points) > coarse_tolerance) continue;
+    refined.cells = 2 * cells;
+    return refined;
+  }
+  return {};
+}
+
+}  // namespace
+
+Pixel RefinedFace::at(double x, double y) const {
+  const int j = std::clamp(static_cast<int>(std::floor(y)), 0, cells - 1);
+  const int i = std::clamp(static_cast<int>(std::floor(x)), 0, cells - 1 - j);
+  double fx = x - i, fy = y - j;
+  const Pixel &along = points[index(cells, i + 1, j)], &across = points[index(cells, i, j + 1)];
+  const bool upper = fx + fy > 1 && i + j < cells - 1;
+  const Pixel& corner = points[upper ? index(cells, i + 1, j + 1) : index(cells, i, j)];
+  // From the upper triangle's right angle, the way to `across` is along x and the way to `along` is along y.
+  if (upper) std::tie(fx, fy) = std::pair(1 - fy, 1 - fx);
+  return {corner.x + fx * (along.x - corner.x) + fy * (across.x - corner.x),
+          corner.y + fx * (along.y - corner.y) + fy * (across.y - corner.y)};
+}
+
+std::vector<RefinedFace> refine_faces(const Transfer& transfer) {
+  std::vector<RefinedFace> refined(transfer.faces.size());
+  if (!transfer.warp || transfer.warp->steps == 0) return refined;
+  parallel_for(static_cast<int>(refined.size()), [&](int i) {
+    if (!transfer.faces[i].linear) refined[i] = refine_face(transfer, transfer.faces[i]);
+  });
+  return refined;
+}
+
+}  // namespace applique
