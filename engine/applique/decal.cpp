@@ -277,7 +277,7 @@ class Solver {
       if (map_.solves >= options_.max_solves) break;
       auto inside = growth.inside(image_);
       const std::size_t peeled = trims == 0 ? growth.peel(image_, inside) : 0;
-      const std::size_t added = growth.grow(image_, inside, {});
+      const std::size_t added = growth.grow(image_, inside, {}) + growth.fill_pockets(image_, inside);
       if (added == 0 && peeled == 0) {
         if (energy != options_.energy) {
           energy = options_.energy;

@@ -6,7 +6,8 @@ namespace applique {
 namespace {
 
 constexpr std::size_t most_hole_sides = 64;
-constexpr double largest_hole = 0.5;  // perimeter, share of the region's diameter
+constexpr double largest_pocket = 0.6;  // perimeter, share of the region's diameter
+constexpr double largest_hole = 0.5;    // perimeter, share of the region's diameter
 
 /// The apex of the face beyond edge a -> b, in the frame of that edge, from the triangle's own shape.
 Vec2 apex_in_edge_frame(const Vec3& a, const Vec3& b, const Vec3& apex) {
@@ -112,6 +113,22 @@ std::vector<Growth::Side> Growth::front(const ImagePoints& image, const IdVector
   return front;
 }
 
+/// Glues the face across edge k of q, which becomes the disc's last, and predicts its new vertex.
+ImmersedDisc::Glue Growth::glue(PatchFaceId q, int k, ImagePoints& image,
+                                IdVector<PatchVertexId, char>& inside) {
+  const PatchFace face = disc_.faces()[q];
+  const ImmersedDisc::GlueResult result = disc_.glue(q, k, cover_limit_);
+  if (result.outcome != ImmersedDisc::Glue::glued) return result.outcome;
+  image.resize(disc_.vertex_count());
+  inside.resize(disc_.vertex_count(), false);
+  if (result.merged) return result.outcome;
+  const PatchVertexId a = face.vertices[(k + 1) % 3], b = face.vertices[(k + 2) % 3];
+  const Vec2 apex = apex_in_edge_frame(disc_.position(a), disc_.position(b), disc_.position(result.vertex));
+  image[result.vertex] = image[a] + (image[b] - image[a]) * apex;
+  inside[result.vertex] = (inside[a] || inside[b]) && region_.contains(image[result.vertex]);
+  return result.outcome;
+}
+
 std::size_t Growth::grow(ImagePoints& image, IdVector<PatchVertexId, char>& inside, const Limits& limits) {
   const std::size_t most = static_cast<std::size_t>(limits.growth * static_cast<double>(disc_.live_faces()));
   std::vector<PatchFaceId> candidates;
@@ -121,24 +138,82 @@ std::size_t Growth::grow(ImagePoints& image, IdVector<PatchVertexId, char>& insi
   for (int ring = 0; ring < limits.rings && disc_.live_faces() < most && !candidates.empty(); ++ring) {
     std::vector<PatchFaceId> fresh;
     for (const Side& side : front(image, inside, candidates)) {
-      const PatchFace face = disc_.faces()[side.face];
-      if (face.neighbours[side.edge].valid()) continue;  // zipped meanwhile
-      ImmersedDisc::GlueResult result = disc_.glue(side.face, side.edge, cover_limit_);
-      if (result.outcome == ImmersedDisc::Glue::boundary && bridge_hole(side.face, side.edge, image))
-        result = disc_.glue(side.face, side.edge, cover_limit_);
-      if (result.outcome != ImmersedDisc::Glue::glued) continue;
-      ++added;
-      fresh.push_back(result.face);
-      image.resize(disc_.vertex_count());
-      inside.resize(disc_.vertex_count(), false);
-      if (result.merged) continue;
-      const PatchVertexId a = face.vertices[(side.edge + 1) % 3], b = face.vertices[(side.edge + 2) % 3];
-      const Vec2 apex =
-          apex_in_edge_frame(disc_.position(a), disc_.position(b), disc_.position(result.vertex));
-      image[result.vertex] = image[a] + (image[b] - image[a]) * apex;
-      inside[result.vertex] = (inside[a] || inside[b]) && region_.contains(image[result.vertex]);
+      if (disc_.faces()[side.face].neighbours[side.edge].valid()) continue;  // zipped meanwhile
+      ImmersedDisc::Glue outcome = glue(side.face, side.edge, image, inside);
+      if (outcome == ImmersedDisc::Glue::boundary && bridge_hole(side.face, side.edge, image))
+        outcome = glue(side.face, side.edge, image, inside);
+      if (outcome == ImmersedDisc::Glue::glued) fresh.emplace_back(disc_.faces().size() - 1);
     }
+    added += fresh.size();
     candidates = std::move(fresh);
+  }
+  return added;
+}
+
+double Growth::mean_scale(const ImagePoints& image) const {
+  double on_surface = 0, in_image = 0;
+  for (PatchFaceId q : ids<PatchFaceId>(disc_.faces().size())) {
+    if (!disc_.alive(q)) continue;
+    const auto& v = disc_.faces()[q].vertices;
+    on_surface += (disc_.position(v[1]) - disc_.position(v[0]))
+                      .cross(disc_.position(v[2]) - disc_.position(v[0]))
+                      .norm();
+    in_image += std::abs(cross(image[v[1]] - image[v[0]], image[v[2]] - image[v[0]]));
+  }
+  return std::sqrt(in_image / on_surface);
+}
+
+std::size_t Growth::fill_pockets(ImagePoints& image, IdVector<PatchVertexId, char>& inside) {
+  const BridgedSurface& surface = disc_.surface();
+  const std::size_t most = disc_.live_faces();
+  const double longest_rim = largest_pocket * region_.diameter() / mean_scale(image);
+  enum class Mark { pocket, open };
+  std::unordered_map<FaceId, Mark> marks;
+  const std::size_t count = disc_.faces().size();
+  for (PatchFaceId q : ids<PatchFaceId>(count)) {
+    if (!disc_.alive(q)) continue;
+    for (int k = 0; k < 3; ++k) {
+      const PatchFace& face = disc_.faces()[q];
+      const FaceId start = surface.neighbour(face.mesh_face, k);
+      if (face.neighbours[k].valid() || !start.valid() || disc_.cover(start) > 0 || marks.contains(start))
+        continue;
+      // Flood the uncovered faces; the part is a pocket if the flood ends soon and its rim is short.
+      std::vector<FaceId> part = {start};
+      marks[start] = Mark::pocket;
+      double rim = 0;
+      bool open = false;
+      for (std::size_t i = 0; i < part.size() && !open; ++i) {
+        for (int e = 0; e < 3 && !open; ++e) {
+          const FaceId next = surface.neighbour(part[i], e);
+          if (!next.valid()) {
+            open = true;
+          } else if (disc_.cover(next) > 0) {
+            const auto& v = surface.vertices(part[i]);
+            rim += (surface.position(v[(e + 2) % 3]) - surface.position(v[(e + 1) % 3])).norm();
+          } else if (const auto [mark, is_new] = marks.try_emplace(next, Mark::pocket); is_new) {
+            part.push_back(next);
+          } else {
+            open = mark->second == Mark::open;
+          }
+        }
+        open = open || part.size() > most || rim > longest_rim;
+      }
+      if (open)
+        for (FaceId f : part) marks[f] = Mark::open;
+    }
+  }
+  // Glue into the pockets only, ring by ring.
+  std::size_t added = 0;
+  for (PatchFaceId q(0); q.value < disc_.faces().size(); ++q.value) {
+    if (!disc_.alive(q)) continue;
+    for (int k = 0; k < 3; ++k) {
+      const PatchFace& face = disc_.faces()[q];
+      const FaceId beyond = surface.neighbour(face.mesh_face, k);
+      if (face.neighbours[k].valid() || !beyond.valid()) continue;
+      const auto mark = marks.find(beyond);
+      if (mark == marks.end() || mark->second == Mark::open) continue;
+      added += glue(q, k, image, inside) == ImmersedDisc::Glue::glued;
+    }
   }
   return added;
 }

@@ -46,6 +46,11 @@ class Growth {
   /// Returns how many faces were added.
   std::size_t grow(ImagePoints& image, IdVector<PatchVertexId, char>& inside, const Limits& limits);
 
+  /// Covers what the patch has grown round without growing over: an uncovered part of the surface with a
+  /// small rim, such as the bottom of a pit whose image was predicted outside the region. Without it the two
+  /// fronts that met behind the pit would stay apart for ever. Returns how many faces were added.
+  std::size_t fill_pockets(ImagePoints& image, IdVector<PatchVertexId, char>& inside);
+
   /// Drops dead ids; `image` follows.
   void compact(ImagePoints& image);
 
@@ -63,7 +68,10 @@ class Growth {
   };
   [[nodiscard]] std::vector<Side> front(const ImagePoints& image, const IdVector<PatchVertexId, char>& inside,
                                         std::span<const PatchFaceId> candidates) const;
+  ImmersedDisc::Glue glue(PatchFaceId q, int k, ImagePoints& image, IdVector<PatchVertexId, char>& inside);
   [[nodiscard]] bool face_meets_region(PatchFaceId q, const ImagePoints& image) const;
+  /// Plane units per scene unit, over the whole disc.
+  [[nodiscard]] double mean_scale(const ImagePoints& image) const;
   bool bridge_hole(PatchFaceId q, int k, const ImagePoints& image);
 
   ImmersedDisc& disc_;
