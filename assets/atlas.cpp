@@ -124,23 +124,29 @@ Charts segment(const Mesh& mesh, const ChartRule& rule) {
     }
   }
   Charts charts;
-  charts.count = number_pieces(across, label, charts.of_triangle);
+  const int count = number_pieces(across, label, charts.of_triangle);
+  charts.name.resize(count);
+  for (std::size_t t = 0; t < label.size(); ++t) charts.name[charts.of_triangle[t]] = label[t];
   return charts;
 }
 
-Result<Mesh> unwrap(const Mesh& mesh, const Charts& charts, int size, int gutter) {
-  std::vector<FlatChart> flat(charts.count);
-  std::vector<std::string> failure(charts.count);
-  parallel_for(charts.count, [&](int chart) {
+Result<Mesh> unwrap(const Mesh& mesh, const Charts& charts, const ChartDensity& density, int size,
+                    int gutter) {
+  const auto count = static_cast<int>(charts.name.size());
+  std::vector<FlatChart> flat(count);
+  std::vector<std::string> failure(count);
+  parallel_for(count, [&](int chart) {
     flat[chart] = extract(mesh, charts, chart);
     if (const auto done = flatten(flat[chart]); !done) failure[chart] = done.error().message;
   });
-  for (int chart = 0; chart < charts.count; ++chart)
+  for (int chart = 0; chart < count; ++chart)
     if (!failure[chart].empty()) {
       const Vec3 at = flat[chart].positions.front();
       return fail(ErrorCode::not_solved, fmt::format("chart {} near ({:.2f}, {:.2f}, {:.2f}): {}", chart,
                                                      at.x(), at.y(), at.z(), failure[chart]));
     }
+  for (int chart = 0; chart < count; ++chart)
+    for (Eigen::Vector2d& uv : flat[chart].uvs) uv *= density(charts.name[chart]);
   pack(flat, size, gutter);
 
   Mesh unwrapped;

@@ -8,6 +8,8 @@ namespace {
 
 constexpr int sides = 72;
 
+enum Chart { foot, body, shoulder, neck, cork };
+
 struct ProfilePoint {
   double radius;
   double height;
@@ -76,11 +78,15 @@ Mesh bottle_mesh() {
 }
 
 int bottle_chart(const Vec3& centre, const Vec3&) {
-  if (centre.y() < 0.12 && std::hypot(centre.x(), centre.z()) < 0.4) return 0;
-  if (centre.y() < 1.81) return 1;
-  if (centre.y() < 2.2) return 2;
-  if (centre.y() > 3.0 && std::hypot(centre.x(), centre.z()) < 0.14) return 4;
-  return 3;
+  const double radius = std::hypot(centre.x(), centre.z());
+  if (centre.y() < 0.12 && radius < 0.4) return foot;
+  if (centre.y() < 1.81) return body;
+  if (centre.y() < 2.2) return shoulder;
+  return centre.y() > 3.0 && radius < 0.14 ? cork : neck;
+}
+
+double bottle_chart_density(int chart) {
+  return chart == body ? 2.2 : 1;
 }
 
 Vec3 bottle_point(double along, double y) {

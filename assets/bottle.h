@@ -19,6 +19,9 @@ Mesh bottle_mesh();
 /// Body, shoulder, neck and foot as charts.
 int bottle_chart(const Vec3& centre, const Vec3& normal);
 
+/// Texels a unit of length that a chart gets, relative to the others: most on the body, for the label.
+double bottle_chart_density(int chart);
+
 /// The point of the body at `along` around from the seam (scene units, towards +x) and height `y`.
 Vec3 bottle_point(double along, double y);
 

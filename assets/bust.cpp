@@ -43,6 +43,22 @@ std::vector<Knot> smooth_curve(const std::vector<Knot>& knots) {
   return curve;
 }
 
+enum Chart {
+  plinth_foot,
+  plinth_front,
+  plinth_back,
+  chest,
+  back,
+  left_shoulder,
+  right_shoulder,
+  throat,
+  nape,
+  skull,
+  face,
+  left_temple,
+  right_temple
+};
+
 /// The right side folded onto the left, rounded over `width` so that no crease runs down the middle.
 Vec3 folded(const Vec3& p, double width) {
   return {std::sqrt(p.x() * p.x() + width * width), p.y(), p.z()};
@@ -294,7 +310,7 @@ std::vector<Landmark> bust_landmarks() {
     return Landmark{name, project_to_surface(bust_distance, p)};
   };
   // On the bust's left chest, seen from the front.
-  const auto chest = [](const char* name, double x, double y) {
+  const auto on_chest = [](const char* name, double x, double y) {
     Vec3 p(x, y, 2);
     for (int i = 0; i < 200; ++i) p.z() -= 0.5 * bust_distance(p);
     return Landmark{name, project_to_surface(bust_distance, p)};
@@ -310,28 +326,42 @@ std::vector<Landmark> bust_landmarks() {
           facing("right_mouth_corner", -0.265, -0.703),
           facing("mouth_middle", 0, -0.695),
           facing("chin", 0, -1.0),
-          chest("emblem_top", 0.70, 1.75),
-          chest("emblem_bottom", 0.62, 1.2)};
+          on_chest("emblem_top", 0.66, 1.84),
+          on_chest("emblem_bottom", 0.60, 1.12)};
 }
 
 int bust_chart(const Vec3& centre, const Vec3& normal) {
   const Vec3 p = centre - head_origin;
-  if (p.y() < -3.80 && normal.y() < -0.7) return 0;
-  if (p.y() < -3.08) return p.z() > -0.2 ? 1 : 2;
+  if (p.y() < -3.80 && normal.y() < -0.7) return plinth_foot;
+  if (p.y() < -3.08) return p.z() > -0.2 ? plinth_front : plinth_back;
   const Vec3 q = unturned(p);
   // Where the neck begins: below the jaw in front, at the nape behind.
   const double jaw_line = -0.66 - 0.55 * std::max(q.z(), 0.0) + 0.1 * std::max(-q.z() - 0.3, 0.0);
-  const double shoulder_line = -1.72 - 0.15 * q.z() / 0.5;
+  const double shoulder_line = -1.72 - 0.3 * q.z();
   if (q.y() < shoulder_line) {
-    if (std::abs(p.x()) > 0.85) return p.x() > 0 ? 3 : 4;
-    return p.z() > -0.25 ? 5 : 6;
+    if (std::abs(p.x()) > 0.85) return p.x() > 0 ? left_shoulder : right_shoulder;
+    return p.z() > -0.25 ? chest : back;
   }
-  if (q.y() < jaw_line) return q.z() > -0.22 ? 7 : 8;
+  if (q.y() < jaw_line) return q.z() > -0.22 ? throat : nape;
   const Vec3 from_middle = (q - Vec3(0, 0.15, -0.05)).normalized();
   const double around = std::atan2(std::abs(q.x()), q.z() + 0.05);
-  if (from_middle.y() > 0.78 || around > 2.0) return 9;
-  if (around < 0.95) return 10;
-  return q.x() > 0 ? 11 : 12;
+  if (from_middle.y() > 0.78 || around > 2.0) return skull;
+  if (around < 0.95) return face;
+  return q.x() > 0 ? left_temple : right_temple;
+}
+
+double bust_chart_density(int chart) {
+  switch (chart) {
+    case face:
+      return 1.9;
+    case left_temple:
+    case right_temple:
+    case chest:
+    case left_shoulder:
+      return 1.3;
+    default:
+      return 1;
+  }
 }
 
 }  // namespace applique::assets

@@ -63,8 +63,8 @@ Result<void> write_jobs(const std::filesystem::path& folder) {
   });
   APPLIQUE_CHECK(write_job(folder / "bust-emblem.json", "bust.glb", "emblem", emblem));
 
-  // The label goes on without stretch: 1024 pixels are 1.76 units along the body.
-  constexpr double scale = 1.76 / 1024;
+  // The label goes on without stretch: 1024 pixels are 1.4 units along the body.
+  constexpr double scale = 1.4 / 1024;
   constexpr double middle = 0.5 * (bottle_label_low + bottle_label_high);
   ordered_json label = ordered_json::array();
   for (const Pixel p : {Pixel{112, 106}, Pixel{912, 106}, Pixel{512, 256}, Pixel{112, 406}, Pixel{912, 406}})

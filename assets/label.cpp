@@ -70,6 +70,7 @@ const std::map<char, Letter>& letters() {
       {'C', {0.8, {arc({0.5, 0.5}, 0.5, -0.28 * pi, -1.72 * pi)}}},
       {'N', {0.68, {{{0, 1}, {0, 0}, {0.68, 1}, {0.68, 0}}}}},
       {'T', {0.64, {{{0, 0}, {0.64, 0}}, {{0.32, 0}, {0.32, 1}}}}},
+      {'V', {0.8, {{{0, 0}, {0.4, 1}, {0.8, 0}}}}},
       {' ', {0.3, {}}},
   };
   return all;
@@ -111,18 +112,18 @@ Outline notched(double inset, double notch) {
 void paint_sunburst(Canvas& canvas, Vec2 c) {
   for (int i = 0; i < 48; ++i) {
     const double angle = i * pi / 24;
-    canvas.stroke(std::vector<Dab>{{c + std::polar(120.0, angle), 2.4},
-                                   {c + std::polar(i % 2 ? 158.0 : 172.0, angle), 0.9}},
+    canvas.stroke(std::vector<Dab>{{c + std::polar(100.0, angle), 2.4},
+                                   {c + std::polar(i % 2 ? 118.0 : 128.0, angle), 0.9}},
                   solid(i % 2 ? gold : red));
   }
-  canvas.fill(circle(c, 116), solid(green));
-  canvas.line(circle(c, 107), 2.5, solid(gold), true);
-  canvas.line(circle(c, 100), 1.2, solid(gold), true);
+  canvas.fill(circle(c, 96), solid(green));
+  canvas.line(circle(c, 89), 2.5, solid(gold), true);
+  canvas.line(circle(c, 83), 1.2, solid(gold), true);
   // Three interlaced rings.
   for (int i = 0; i < 3; ++i) {
-    const Vec2 ring = c + std::polar(30.0, -pi / 2 + i * 2 * pi / 3);
-    canvas.line(circle(ring, 42), 11, solid(green), true);
-    canvas.line(circle(ring, 42), 6.5,
+    const Vec2 ring = c + std::polar(24.0, -pi / 2 + i * 2 * pi / 3);
+    canvas.line(circle(ring, 35), 10, solid(green), true);
+    canvas.line(circle(ring, 35), 6,
                 solid(i == 0   ? Rgba{0.96, 0.80, 0.42}
                       : i == 1 ? Rgba{0.93, 0.88, 0.76}
                                : Rgba{0.86, 0.34, 0.24}),
@@ -151,10 +152,10 @@ Image draw_label() {
       canvas.fill(Outline{{side - 7, step}, {side, step - 9}, {side + 7, step}, {side, step + 9}},
                   solid(static_cast<int>(step - 131) / 25 % 2 ? gold : red));
   }
-  paint_sunburst(canvas, {512, 176});
+  paint_sunburst(canvas, {512, 190});
   for (const double side : {-1.0, 1.0}) {
     // Leaf sprays beside the medallion.
-    const Vec2 root(512 + side * 196, 206);
+    const Vec2 root(512 + side * 172, 222);
     canvas.stroke(brush(std::vector<Dab>{
                       {root, 2.5}, {root + Vec2(side * 90, -34), 3}, {root + Vec2(side * 190, -20), 1}}),
                   solid(green));
@@ -172,10 +173,10 @@ Image draw_label() {
     }
     canvas.fill(circle(root + Vec2(side * 206, -20), 7), solid(red));
   }
-  write(canvas, "APPLIQUE", {512, 366}, 64, 0.36, 10, solid(green));
+  write(canvas, "APPLIQUE", {512, 362}, 66, 0.36, 10, solid(green));
   canvas.line({{150, 424}, {330, 424}}, 2, solid(gold));
   canvas.line({{694, 424}, {874, 424}}, 2, solid(gold));
-  write(canvas, "SEAL OIL", {512, 424}, 25, 0.5, 3.6, solid(red));
+  write(canvas, "OLIVE OIL", {512, 424}, 25, 0.5, 3.6, solid(red));
   return canvas.image();
 }
 

@@ -41,7 +41,7 @@ Result<void> generate(const std::filesystem::path& folder, bool previews) {
     return fail(ErrorCode::output_unwritable, fmt::format("{}: {}", folder.string(), error.message()));
   APPLIQUE_TRY(const Model bust, make_bust(texture_size));
   APPLIQUE_CHECK(write_glb(folder / "bust.glb", bust.mesh, bust.texture, {"bust", 0.55}));
-  APPLIQUE_TRY(const Model bottle, make_bottle(texture_size / 2));
+  APPLIQUE_TRY(const Model bottle, make_bottle(texture_size));
   APPLIQUE_CHECK(write_glb(folder / "bottle.glb", bottle.mesh, bottle.texture, {"bottle", 0.2}));
   APPLIQUE_CHECK(write_image(folder / "mask.png", draw_mask()));
   APPLIQUE_CHECK(write_image(folder / "emblem.png", draw_emblem()));

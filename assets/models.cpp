@@ -59,7 +59,7 @@ Mesh make_bust_mesh() {
   options.coarse = 0.1;
   options.smoothing = 2;
   RemeshOptions edges;
-  edges.finest = [](const Vec3& p) { return p.y() < 2 ? 0.04 : 0.012; };
+  edges.finest = [](const Vec3& p) { return p.y() < 2 ? 0.04 : 0.015; };
   edges.coarsest = 0.085;
   edges.fineness = 0.36;
   return remesh(polygonise(bust_distance, options), bust_distance, edges);
@@ -68,7 +68,7 @@ Mesh make_bust_mesh() {
 Result<Model> make_bust(int texture_size) {
   Model model;
   const Mesh mesh = make_bust_mesh();
-  APPLIQUE_TRY(model.mesh, unwrap(mesh, segment(mesh, bust_chart), texture_size, gutter));
+  APPLIQUE_TRY(model.mesh, unwrap(mesh, segment(mesh, bust_chart), bust_chart_density, texture_size, gutter));
   std::vector<double> open(model.mesh.positions.size());
   parallel_for(static_cast<int>(open.size() + 255) / 256, [&](int block) {
     for (std::size_t v = 256UL * block; v < std::min<std::size_t>(open.size(), 256UL * (block + 1)); ++v)
@@ -81,7 +81,8 @@ Result<Model> make_bust(int texture_size) {
 Result<Model> make_bottle(int texture_size) {
   Model model;
   const Mesh mesh = bottle_mesh();
-  APPLIQUE_TRY(model.mesh, unwrap(mesh, segment(mesh, bottle_chart), texture_size, gutter));
+  APPLIQUE_TRY(model.mesh,
+               unwrap(mesh, segment(mesh, bottle_chart), bottle_chart_density, texture_size, gutter));
   model.texture = paint_texture(model.mesh, {}, texture_size, glass);
   return model;
 }
