@@ -131,6 +131,7 @@ Transfer lay_out_transfer(const SolvedJob& job, const BakeTarget& target, std::s
     const ModelMaterial& material = job.model.materials[*target.material];
     transfer.wrap_u = material.wrap_u;
     transfer.wrap_v = material.wrap_v;
+    transfer.opaque = material.alpha_mode == "OPAQUE";
   }
 
   const auto texel_corners = [&](std::uint32_t part_index, std::uint32_t triangle) {

@@ -145,29 +145,6 @@ Result<void> solve_geometry(const Model& model, SurfaceCache& surfaces, SolvedDe
   return {};
 }
 
-void warn_of_coverage(SolvedDecal& decal) {
-  const auto warn = [&](const char* code, const char* reason) {
-    decal.warnings.push_back({code, fmt::format("decal '{}': {:.1f} % of the image lies on the surface: {}",
-                                                decal.job.name, 100 * decal.map.quality.coverage, reason)});
-  };
-  switch (decal.map.status) {
-    case Coverage::covered:
-      break;
-    case Coverage::clipped_by_boundary:
-      warn("clipped_by_boundary", "the surface ends under it");
-      break;
-    case Coverage::clipped_by_cover:
-      warn("clipped_by_cover", "the decal would have to lie on top of itself");
-      break;
-    case Coverage::clipped_closed:
-      warn("clipped_closed", "the surface closes under it");
-      break;
-    case Coverage::not_converged:
-      warn("not_converged", "the growth of the patch did not come to an end");
-      break;
-  }
-}
-
 }  // namespace
 
 Result<std::vector<std::size_t>> resolve_references(const std::vector<Reference>& references,
@@ -227,7 +204,6 @@ Result<SolvedJob> solve_job(const Job& job, const StageCallback& on_stage) {
     solved.times.add("load_images", watch.lap());  // what was waited for
     APPLIQUE_TRY(decal.image, of_decal(decal_job, std::move(loaded.image)));
     APPLIQUE_CHECK(solve_geometry(solved.model, surfaces, decal));
-    warn_of_coverage(decal);
     decal.warnings.insert(decal.warnings.end(), decal.map.warnings.begin(), decal.map.warnings.end());
     solved.decals.push_back(std::move(decal));
     solved.times.add("solve", watch.lap());

@@ -65,7 +65,7 @@ TEST_F(ErrorsTest, NoneInTheGoodJob) {
 TEST_F(ErrorsTest, ContourThatCrossesItselfSaysWhere) {
   json job = good_job();
   job["decals"][0]["region"] = {{"contour", {{0, 0}, {64, 64}, {64, 0}, {0, 64}}}};
-  expect_failure(job, 2, {"'crest'", "cross", "(32.0, 32.0)"});
+  expect_failure(job, 2, {"'crest'", "cross", "(32.00, 32.00)"});
 }
 
 TEST_F(ErrorsTest, FeatureOutsideTheContourSaysByHowMuch) {
