@@ -51,8 +51,9 @@ class Resolver {
         fmt::format(
             "{}: position {} is {:.4g} from the surface, more than {} {:.4g}; the nearest point is {}",
             owner_, shown(place.position), distance,
-            place.max_distance ? "its max_distance of" : "2 % of the model's diagonal,", limit,
-            shown(position_of(surface_.mesh, point))));
+            place.max_distance ? "its max_distance of"
+                               : "the default max_distance, 2 % of the model's diagonal,",
+            limit, shown(position_of(surface_.mesh, point))));
   }
 
   Result<SurfacePoint> operator()(const RayPlace& place) const {

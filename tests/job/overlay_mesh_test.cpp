@@ -1,0 +1,136 @@
+#include "overlay_mesh.h"
+
+#include <cmath>
+#include <map>
+#include <random>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "cli/command.h"
+#include "cli/small_model.h"
+#include "solve_job.h"
+
+using namespace applique;
+using nlohmann::json;
+
+namespace {
+
+constexpr int image_size = 256;
+
+/// The image on a plane of few, large triangles, bent strongly by features that no similarity fits.
+class OverlayMeshTest : public testing::Test {
+ protected:
+  void SetUp() override {
+    write_small_model(folder_ / "model.glb", {make_plane("Plane", 5)},
+                      {{"paint", std::nullopt, {1, 1, 1, 1}}});
+    write_png(folder_ / "image.png", make_noise(image_size));
+    const auto pin = [](double x, double y, double px, double py) {
+      return json({{"image", {x, y}}, {"position", {px, py, 0}}});
+    };
+    folder_.write(
+        "job.json",
+        {{"version", 1},
+         {"model", "model.glb"},
+         {"decals",
+          json::array({{{"name", "bent"},
+                        {"image", "image.png"},
+                        {"opacity", 0.5},
+                        {"features",
+                         {pin(64, 64, -0.3, 0.25), pin(192, 64, 0.25, 0.2), pin(128, 128, 0.06, -0.03),
+                          pin(64, 192, -0.25, -0.25), pin(192, 192, 0.25, -0.3)}}}})}});
+    const auto job = load_job(folder_ / "job.json");
+    ASSERT_TRUE(job) << job.error().message;
+    auto solved = solve_job(*job);
+    ASSERT_TRUE(solved) << solved.error().message;
+    job_ = std::move(*solved);
+  }
+
+  const SolvedDecal& decal() const { return job_.decals.front(); }
+
+  CommandFolder folder_;
+  SolvedJob job_;
+};
+
+TEST_F(OverlayMeshTest, LinearTextureCoordinatesFollowTheExactMap) {
+  const OverlayMesh mesh = build_overlay_mesh(job_.model, decal(), 0);
+  const DecalMap& map = decal().map;
+  const ImageFrame& frame = decal().region.frame();
+  // The embedding of a plane is a similarity: two points of a face give it.
+  const PatchFace& face = map.patch.faces[PatchFaceId(0)];
+  const auto corners = decal().surface->mesh.corners(face.mesh_face);
+  const auto flat = [](const Vec3& p) { return Vec2(p.x(), p.y()); };
+  const Vec2 turn =
+      (map.plane[face.vertices[1]] - map.plane[face.vertices[0]]) / (flat(corners[1]) - flat(corners[0]));
+  const auto exact = [&](const Vec3& p) {
+    return frame.to_pixel(map.warp(map.plane[face.vertices[0]] + turn * (flat(p) - flat(corners[0]))));
+  };
+
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> unit(0, 1);
+  double farthest = 0;
+  for (const auto& t : mesh.triangles)
+    for (int sample = 0; sample < 40; ++sample) {
+      const double root = std::sqrt(unit(random));
+      const double split = unit(random);
+      const std::array<double, 3> weights = {1 - root, root * (1 - split), root * split};
+      Vec3 position = Vec3::Zero();
+      Vec2 uv = 0;
+      for (std::size_t k = 0; k < 3; ++k) {
+        position += weights[k] * mesh.positions[t[k]];
+        uv += weights[k] * Vec2(mesh.uvs[t[k]][0], mesh.uvs[t[k]][1]);
+      }
+      const Pixel pixel = exact(position);
+      farthest = std::max(farthest,
+                          std::hypot(uv.real() * frame.width - pixel.x, uv.imag() * frame.height - pixel.y));
+    }
+  EXPECT_LT(farthest, 0.25);
+  // The test has teeth: without dividing, it is much more.
+  const OverlayMesh coarse = build_overlay_mesh(job_.model, decal(), 0, 1000);
+  EXPECT_GT(mesh.triangles.size(), 4 * coarse.triangles.size());
+}
+
+TEST_F(OverlayMeshTest, HasNoCracks) {
+  const OverlayMesh mesh = build_overlay_mesh(job_.model, decal(), 0.01);
+  std::map<std::pair<std::uint32_t, std::uint32_t>, int> edges;
+  for (const auto& t : mesh.triangles)
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto [a, b] = std::minmax(t[k], t[(k + 1) % 3]);
+      ++edges[{a, b}];
+    }
+  const auto on_border = [&](std::uint32_t v) {
+    const auto& uv = mesh.uvs[v];
+    const auto at_end = [](double x) { return std::abs(x) < 1e-9 || std::abs(x - 1) < 1e-9; };
+    return at_end(uv[0]) || at_end(uv[1]);
+  };
+  for (const auto& [edge, count] : edges) {
+    if (count == 2) continue;
+    EXPECT_EQ(count, 1);
+    EXPECT_TRUE(on_border(edge.first) && on_border(edge.second));
+  }
+}
+
+TEST_F(OverlayMeshTest, LiesAboveTheSurfaceAndInsideTheImage) {
+  const OverlayMesh mesh = build_overlay_mesh(job_.model, decal(), 0.01);
+  for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
+    EXPECT_NEAR(mesh.positions[i].z(), 0.01, 1e-12);
+    EXPECT_NEAR(mesh.normals[i].z(), 1, 1e-12);
+    for (const double coordinate : mesh.uvs[i]) {
+      EXPECT_GE(coordinate, -1e-9);
+      EXPECT_LE(coordinate, 1 + 1e-9);
+    }
+  }
+  for (const auto& t : mesh.triangles)
+    EXPECT_GT(
+        (mesh.positions[t[1]] - mesh.positions[t[0]]).cross(mesh.positions[t[2]] - mesh.positions[t[0]]).z(),
+        0);
+}
+
+TEST_F(OverlayMeshTest, PictureCarriesTheOpacity) {
+  const Image image = overlay_image(decal());
+  EXPECT_EQ(image.channels, 4);
+  EXPECT_EQ(image.pixel(128, 128)[3], 0x8000);
+  EXPECT_EQ(image.pixel(128, 128)[0], decal().image.pixel(128, 128)[0]);
+}
+
+}  // namespace
