@@ -33,7 +33,8 @@ struct OutcomeCounts {
 // Rounds to nearest, ties to even; values are 0 to 1.
 std::uint16_t to_half(float value) {
   constexpr float smallest_normal = 6.103515625e-05F;
-  if (value < smallest_normal) return static_cast<std::uint16_t>(std::max(value, 0.0F) * 16777216.0F + 0.5F);
+  if (value <= 0) return 0;
+  if (value < smallest_normal) return static_cast<std::uint16_t>(std::lround(value * 16777216.0F));
   const auto bits = std::bit_cast<std::uint32_t>(value) - (112U << 23);
   return static_cast<std::uint16_t>((bits + 0xfffU + (bits >> 13 & 1U)) >> 13);
 }

@@ -84,8 +84,9 @@ void add_bilinear(const DecalImage& image, std::size_t level, Pixel pixel, doubl
   const double x = pixel.x * scale - 0.5, y = pixel.y * scale - 0.5;
   const double x0 = std::floor(x), y0 = std::floor(y);
   for (int k = 0; k < 4; ++k) {
-    const double wx = k % 2 ? x - x0 : x0 + 1 - x, wy = k / 2 ? y - y0 : y0 + 1 - y;
-    const Colour texel = fetch(image, level, x0 + k % 2, y0 + k / 2);
+    const int dx = k % 2, dy = k / 2;
+    const double wx = dx == 1 ? x - x0 : x0 + 1 - x, wy = dy == 1 ? y - y0 : y0 + 1 - y;
+    const Colour texel = fetch(image, level, x0 + dx, y0 + dy);
     for (int c = 0; c < 4; ++c) sum[c] += weight * wx * wy * texel[c];
   }
 }
