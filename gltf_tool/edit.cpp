@@ -245,10 +245,12 @@ void set_base_colour_image(Document& document, std::size_t material, std::span<c
   auto& pbr = document.json["materials"][material]["pbrMetallicRoughness"];
   if (!pbr.contains("baseColorTexture")) {
     pbr["baseColorTexture"] = {{"index", textures.size()}};
-    pbr.erase("baseColorFactor");
     textures.push_back(Json::object());
   }
   std::size_t texture = pbr["baseColorTexture"]["index"].get<std::size_t>();
+  bool has_image = false;
+  each_source(textures[texture], [&](const Json&) { has_image = true; });
+  if (!has_image) pbr.erase("baseColorFactor");
   if (count_texture_uses(document, texture) > 1) {
     Json copy = textures[texture];
     texture = textures.size();

@@ -25,8 +25,9 @@ std::vector<std::size_t> isolate_materials(Document& document, std::span<const P
 
 /// Shows an image (PNG bytes) as the base colour of an isolated material. The texture is copied first when
 /// other materials or slots use it; its sampler, and the material's texture coordinates, stay. A material
-/// without a base-colour texture gets one over TEXCOORD_0, and its baseColorFactor becomes 1, so the image
-/// must have it in its colours. The replaced image's bytes go where nothing else uses them.
+/// without a base-colour texture gets one over TEXCOORD_0. Where there was no image before, baseColorFactor
+/// becomes 1, so the image must have it in its colours. The replaced image's bytes go where nothing else uses
+/// them.
 void set_base_colour_image(Document& document, std::size_t material, std::span<const std::uint8_t> png);
 
 /// Adds an image of PNG bytes: in the chunk of a GLB, else as a new file named after `name`. Returns its
