@@ -25,7 +25,7 @@ struct Charts {
 Charts segment(const Mesh& mesh, const ChartRule& rule);
 
 /// Unwraps every chart with little distortion, scales it by its density, and packs all into a square of
-/// `size` texels, at least `gutter` texels apart and from the sides (see flatten() and pack()). Vertices on
+/// `size` texels, at least `gutter` texels apart (see flatten() and pack()). Vertices on
 /// chart borders are duplicated. Fails when a chart is no disc or folds.
 Result<Mesh> unwrap(const Mesh& mesh, const Charts& charts, const ChartDensity& density, int size,
                     int gutter);

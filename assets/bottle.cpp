@@ -6,7 +6,7 @@
 namespace applique::assets {
 namespace {
 
-constexpr int sides = 72;
+constexpr int sides = 64;
 
 enum Chart { foot, body, shoulder, neck, cork };
 

@@ -12,7 +12,10 @@
 namespace applique::assets {
 namespace {
 
-constexpr int gutter = 16;  // texels between charts
+/// Texels between charts: 16 of 2048.
+int gutter(int texture_size) {
+  return texture_size / 128;
+}
 
 Colour blend(const Colour& a, const Colour& b, double t) {
   return a + std::clamp(t, 0.0, 1.0) * (b - a);
@@ -68,7 +71,8 @@ Mesh make_bust_mesh() {
 Result<Model> make_bust(int texture_size) {
   Model model;
   const Mesh mesh = make_bust_mesh();
-  APPLIQUE_TRY(model.mesh, unwrap(mesh, segment(mesh, bust_chart), bust_chart_density, texture_size, gutter));
+  APPLIQUE_TRY(model.mesh, unwrap(mesh, segment(mesh, bust_chart), bust_chart_density, texture_size,
+                                  gutter(texture_size)));
   std::vector<double> open(model.mesh.positions.size());
   parallel_for(static_cast<int>(open.size() + 255) / 256, [&](int block) {
     for (std::size_t v = 256UL * block; v < std::min<std::size_t>(open.size(), 256UL * (block + 1)); ++v)
@@ -81,8 +85,8 @@ Result<Model> make_bust(int texture_size) {
 Result<Model> make_bottle(int texture_size) {
   Model model;
   const Mesh mesh = bottle_mesh();
-  APPLIQUE_TRY(model.mesh,
-               unwrap(mesh, segment(mesh, bottle_chart), bottle_chart_density, texture_size, gutter));
+  APPLIQUE_TRY(model.mesh, unwrap(mesh, segment(mesh, bottle_chart), bottle_chart_density, texture_size,
+                                  gutter(texture_size)));
   model.texture = paint_texture(model.mesh, {}, texture_size, glass);
   return model;
 }

@@ -58,13 +58,13 @@ double best_angle(const std::vector<Vector2d>& uvs) {
   return best;
 }
 
-/// Cells that the chart, scaled to cells, touches or comes within one cell of. Placed so that cell 1 is its
-/// origin.
-Bitmap draw(const FlatChart& chart, const std::vector<Vector2d>& uvs, double scale) {
+/// Cells that the chart, scaled to cells, touches or comes within `margin` cells of; its origin is at cell
+/// `margin`.
+Bitmap draw(const FlatChart& chart, const std::vector<Vector2d>& uvs, double scale, int margin) {
   const Vector2d box = scale * extent(uvs);
   Bitmap bitmap;
-  bitmap.width = static_cast<int>(box.x()) + 3;
-  bitmap.height = static_cast<int>(box.y()) + 3;
+  bitmap.width = static_cast<int>(box.x()) + 1 + 2 * margin;
+  bitmap.height = static_cast<int>(box.y()) + 1 + 2 * margin;
   if (bitmap.width > cells || bitmap.height > cells) return bitmap;
   bitmap.rows.resize(bitmap.height);
   for (const Triangle& t : chart.triangles) {
@@ -74,9 +74,10 @@ Bitmap draw(const FlatChart& chart, const std::vector<Vector2d>& uvs, double sca
       low = low.cwiseMin(scale * uvs[t[i]]);
       high = high.cwiseMax(scale * uvs[t[i]]);
     }
-    // Triangles are small against cells: their box stands for them, and one cell all around for the gutter.
-    for (int y = static_cast<int>(low.y()); y <= static_cast<int>(high.y()) + 2; ++y)
-      for (int x = static_cast<int>(low.x()); x <= static_cast<int>(high.x()) + 2; ++x) bitmap.rows[y].set(x);
+    // Triangles are small against charts: their boxes stand for them.
+    for (int y = static_cast<int>(low.y()); y <= static_cast<int>(high.y()) + 2 * margin; ++y)
+      for (int x = static_cast<int>(low.x()); x <= static_cast<int>(high.x()) + 2 * margin; ++x)
+        bitmap.rows[y].set(x);
   }
   return bitmap;
 }
@@ -120,17 +121,16 @@ void pack(std::vector<FlatChart>& charts, int size, int gutter) {
   std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
     return extent(turns[a][0]).prod() > extent(turns[b][0]).prod();
   });
-  // A cell is at least half a gutter wide: two charts keep two cells between them.
   const double cell = static_cast<double>(size) / cells;
-  const double needed = 0.5 * gutter / cell;
-  double scale = 1.3 * cells / std::sqrt(area) / std::max(1.0, needed);
+  const int margin = static_cast<int>(std::ceil(0.5 * gutter / cell));
+  double scale = 1.3 * cells / std::sqrt(area);
   std::vector<Place> places(charts.size());
   for (bool packed = false; !packed; scale *= 0.97) {
     std::vector<Row> sheet(cells);
     packed = true;
     for (const std::size_t c : order) {
       std::array<Bitmap, 4> bitmaps;
-      for (int i = 0; i < 4; ++i) bitmaps[i] = draw(charts[c], turns[c][i], scale);
+      for (int i = 0; i < 4; ++i) bitmaps[i] = draw(charts[c], turns[c][i], scale, margin);
       const auto place = find_place(sheet, bitmaps);
       if (!place) {
         packed = false;
@@ -143,8 +143,8 @@ void pack(std::vector<FlatChart>& charts, int size, int gutter) {
     if (packed)
       for (std::size_t c = 0; c < charts.size(); ++c)
         for (std::size_t v = 0; v < charts[c].uvs.size(); ++v)
-          charts[c].uvs[v] =
-              cell * (scale * turns[c][places[c].turn][v] + Vector2d(places[c].x + 1, places[c].y + 1));
+          charts[c].uvs[v] = cell * (scale * turns[c][places[c].turn][v] +
+                                     Vector2d(places[c].x + margin, places[c].y + margin));
   }
 }
 

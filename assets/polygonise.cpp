@@ -166,10 +166,16 @@ Mesh polygonise(const DistanceField& field, const PolygoniseOptions& options) {
   std::vector<double> values(points.size());
   parallel_for(nz, [&](int z) {
     for (int y = 0; y < ny; ++y)
-      for (int x = 0; x < nx; ++x) {
+      for (int x = 0, known = 0; x < nx; ++x) {
         const std::size_t i = grid.at(x, y, z);
         points[i] = grid.point(Vec3(x, y, z));
-        values[i] = field(points[i]);
+        // Far from the surface only the sign counts, and the next few points along the row share it.
+        if (known-- > 0) {
+          values[i] = values[i - 1];
+        } else {
+          values[i] = field(points[i]);
+          known = static_cast<int>(0.5 * std::abs(values[i]) / options.coarse);
+        }
       }
   });
 

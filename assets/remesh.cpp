@@ -21,12 +21,13 @@ class Remesher {
       for (const Index v : triangles_[t]) around_[v].push_back(t);
   }
 
-  void round() {
-    measure_sizes();
+  /// `last`: vertices go onto the surface exactly.
+  void round(bool measure, bool last) {
+    if (measure) measure_sizes();
     split_long();
     collapse_short();
     flip_edges();
-    smooth();
+    smooth(last ? 1e-7 : 1e-4);
   }
 
   [[nodiscard]] Mesh mesh() const {
@@ -231,7 +232,7 @@ class Remesher {
     });
   }
 
-  void smooth() {
+  void smooth(double tolerance) {
     std::vector<Vec3> moved = positions_;
     each_vertex([&](Index v) {
       // Towards the mean of the triangles' centres, weighted by area relative to the size wanted there.
@@ -252,7 +253,7 @@ class Remesher {
       if (weight <= 0) return;
       const Vec3 n = field_normal(field_, positions_[v]);
       const Vec3 offset = sum / weight - positions_[v];
-      moved[v] = project_to_surface(field_, positions_[v] + 0.8 * (offset - offset.dot(n) * n), 1e-7);
+      moved[v] = project_to_surface(field_, positions_[v] + 0.8 * (offset - offset.dot(n) * n), tolerance);
     });
     positions_ = std::move(moved);
   }
@@ -269,7 +270,7 @@ class Remesher {
 
 Mesh remesh(const Mesh& mesh, const DistanceField& field, const RemeshOptions& options) {
   Remesher remesher(mesh, field, options);
-  for (int i = 0; i < options.rounds; ++i) remesher.round();
+  for (int i = 0; i < options.rounds; ++i) remesher.round(i % 2 == 0, i + 1 == options.rounds);
   Mesh out = remesher.mesh();
   out.normals.resize(out.positions.size());
   parallel_for(static_cast<int>(out.positions.size() + 255) / 256, [&](int block) {
