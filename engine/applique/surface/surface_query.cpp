@@ -253,7 +253,7 @@ SurfacePoint SurfaceQuery::nearest(const Vec3& position) const {
       const auto weights = nearest_in_triangle(corners, position);
       const Vec3 point = weights[0] * corners[0] + weights[1] * corners[1] + weights[2] * corners[2];
       const double d = (point - position).squaredNorm();
-      if (d < best_distance || (d == best_distance && f < best.face)) {
+      if (d < best_distance || (d == best_distance && f.value < best.face.value)) {
         best_distance = d;
         best = {f, weights};
       }
@@ -284,7 +284,7 @@ std::optional<SurfacePoint> SurfaceQuery::first_hit(const Vec3& origin, const Ve
     for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
       const FaceId f = tree_->faces[i];
       const auto hit = intersect(ray, mesh_->corners(f));
-      if (hit && (hit->t < best_t || (hit->t == best_t && f < best.face))) {
+      if (hit && (hit->t < best_t || (hit->t == best_t && f.value < best.face.value))) {
         best_t = hit->t;
         best = {f, hit->barycentric};
       }
