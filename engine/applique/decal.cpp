@@ -205,7 +205,6 @@ class Solver {
       StageTimer stage(map_.times.embed);
       Embedding embedding = embed_disc(measure_disc(disc), {energy});
       rung_ = embedding.rung;
-      flips_ = embedding.flips;
       for (std::size_t k = 0; k < features.size(); ++k)
         features[k] =
             interpolate(disc, growth.feature_faces()[k], input_.features[k].surface, embedding.plane);
@@ -236,6 +235,7 @@ class Solver {
                 input_.name, feature_range()));
       similarity = fit_similarity(features, targets_);
     }
+    scale_ = std::abs(similarity.scale);
     for (Vec2& z : features) z = similarity(z);
     for (Vec2& z : plane) z = similarity(z);
     return {};
@@ -277,7 +277,8 @@ class Solver {
       if (map_.solves >= options_.max_solves) break;
       auto inside = growth.inside(image_);
       const std::size_t peeled = trims == 0 ? growth.peel(image_, inside) : 0;
-      const std::size_t added = growth.grow(image_, inside, {}) + growth.fill_pockets(image_, inside);
+      const std::size_t added =
+          growth.grow(image_, inside, scale_, {}) + growth.fill_pockets(image_, inside, scale_);
       if (added == 0 && peeled == 0) {
         if (energy != options_.energy) {
           energy = options_.energy;
@@ -404,7 +405,7 @@ class Solver {
   ImagePoints plane_, image_;
   BuiltWarp built_;
   EmbeddingRung rung_ = EmbeddingRung::conformal;
-  std::size_t flips_ = 0;
+  double scale_ = 1;  ///< Of the alignment, plane units per scene unit.
   DecalMap map_;
 };
 

@@ -6,8 +6,9 @@ namespace applique {
 namespace {
 
 constexpr std::size_t most_hole_sides = 64;
-constexpr double largest_pocket = 0.6;  // perimeter, share of the region's diameter
-constexpr double largest_hole = 0.5;    // perimeter, share of the region's diameter
+constexpr double largest_pocket = 0.15;   // area, share of the patch's
+constexpr double longest_pocket_rim = 1;  // share of the region's diameter
+constexpr double largest_hole = 0.5;      // perimeter, share of the region's diameter
 
 /// The apex of the face beyond edge a -> b, in the frame of that edge, from the triangle's own shape.
 Vec2 apex_in_edge_frame(const Vec3& a, const Vec3& b, const Vec3& apex) {
@@ -129,7 +130,8 @@ ImmersedDisc::Glue Growth::glue(PatchFaceId q, int k, ImagePoints& image,
   return result.outcome;
 }
 
-std::size_t Growth::grow(ImagePoints& image, IdVector<PatchVertexId, char>& inside, const Limits& limits) {
+std::size_t Growth::grow(ImagePoints& image, IdVector<PatchVertexId, char>& inside, double scale,
+                         const Limits& limits) {
   const std::size_t most = static_cast<std::size_t>(limits.growth * static_cast<double>(disc_.live_faces()));
   std::vector<PatchFaceId> candidates;
   candidates.reserve(disc_.faces().size());
@@ -140,7 +142,7 @@ std::size_t Growth::grow(ImagePoints& image, IdVector<PatchVertexId, char>& insi
     for (const Side& side : front(image, inside, candidates)) {
       if (disc_.faces()[side.face].neighbours[side.edge].valid()) continue;  // zipped meanwhile
       ImmersedDisc::Glue outcome = glue(side.face, side.edge, image, inside);
-      if (outcome == ImmersedDisc::Glue::boundary && bridge_hole(side.face, side.edge, image))
+      if (outcome == ImmersedDisc::Glue::boundary && bridge_hole(side.face, side.edge, scale))
         outcome = glue(side.face, side.edge, image, inside);
       if (outcome == ImmersedDisc::Glue::glued) fresh.emplace_back(disc_.faces().size() - 1);
     }
@@ -150,23 +152,18 @@ std::size_t Growth::grow(ImagePoints& image, IdVector<PatchVertexId, char>& insi
   return added;
 }
 
-double Growth::mean_scale(const ImagePoints& image) const {
-  double on_surface = 0, in_image = 0;
-  for (PatchFaceId q : ids<PatchFaceId>(disc_.faces().size())) {
-    if (!disc_.alive(q)) continue;
-    const auto& v = disc_.faces()[q].vertices;
-    on_surface += (disc_.position(v[1]) - disc_.position(v[0]))
-                      .cross(disc_.position(v[2]) - disc_.position(v[0]))
-                      .norm();
-    in_image += std::abs(cross(image[v[1]] - image[v[0]], image[v[2]] - image[v[0]]));
-  }
-  return std::sqrt(in_image / on_surface);
-}
-
-std::size_t Growth::fill_pockets(ImagePoints& image, IdVector<PatchVertexId, char>& inside) {
+std::size_t Growth::fill_pockets(ImagePoints& image, IdVector<PatchVertexId, char>& inside, double scale) {
   const BridgedSurface& surface = disc_.surface();
-  const std::size_t most = disc_.live_faces();
-  const double longest_rim = largest_pocket * region_.diameter() / mean_scale(image);
+  const double longest_rim = longest_pocket_rim * region_.diameter() / scale;
+  const auto area_of = [&](FaceId f) {
+    const auto& v = surface.vertices(f);
+    return 0.5 * (surface.position(v[1]) - surface.position(v[0]))
+                     .cross(surface.position(v[2]) - surface.position(v[0]))
+                     .norm();
+  };
+  double most = 0;
+  for (PatchFaceId q : ids<PatchFaceId>(disc_.faces().size()))
+    if (disc_.alive(q)) most += largest_pocket * area_of(disc_.faces()[q].mesh_face);
   enum class Mark { pocket, open };
   std::unordered_map<FaceId, Mark> marks;
   const std::size_t count = disc_.faces().size();
@@ -180,7 +177,7 @@ std::size_t Growth::fill_pockets(ImagePoints& image, IdVector<PatchVertexId, cha
       // Flood the uncovered faces; the part is a pocket if the flood ends soon and its rim is short.
       std::vector<FaceId> part = {start};
       marks[start] = Mark::pocket;
-      double rim = 0;
+      double rim = 0, area = 0;
       bool open = false;
       for (std::size_t i = 0; i < part.size() && !open; ++i) {
         for (int e = 0; e < 3 && !open; ++e) {
@@ -196,7 +193,8 @@ std::size_t Growth::fill_pockets(ImagePoints& image, IdVector<PatchVertexId, cha
             open = mark->second == Mark::open;
           }
         }
-        open = open || part.size() > most || rim > longest_rim;
+        area += area_of(part[i]);
+        open = open || area > most || rim > longest_rim;
       }
       if (open)
         for (FaceId f : part) marks[f] = Mark::open;
@@ -218,12 +216,9 @@ std::size_t Growth::fill_pockets(ImagePoints& image, IdVector<PatchVertexId, cha
   return added;
 }
 
-bool Growth::bridge_hole(PatchFaceId q, int k, const ImagePoints& image) {
-  const PatchFace& face = disc_.faces()[q];
-  const PatchVertexId a = face.vertices[(k + 1) % 3], b = face.vertices[(k + 2) % 3];
-  const auto hole = disc_.surface().hole_at(face.mesh_face, k, most_hole_sides);
+bool Growth::bridge_hole(PatchFaceId q, int k, double scale) {
+  const auto hole = disc_.surface().hole_at(disc_.faces()[q].mesh_face, k, most_hole_sides);
   if (!hole) return false;
-  const double scale = std::abs(image[b] - image[a]) / (disc_.position(b) - disc_.position(a)).norm();
   if (!(hole->perimeter * scale < largest_hole * region_.diameter())) return false;
   disc_.surface().bridge(*hole);
   return true;

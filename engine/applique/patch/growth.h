@@ -42,14 +42,15 @@ class Growth {
     double growth = 8;  ///< No further ring once the patch is this many times its size.
   };
   /// Glues rings of faces at the boundary where it lies in the region; the image points of new vertices are
-  /// predicted by continuing the neighbour's similarity and appended to `image`. Bridges small holes.
-  /// Returns how many faces were added.
-  std::size_t grow(ImagePoints& image, IdVector<PatchVertexId, char>& inside, const Limits& limits);
+  /// predicted by continuing the neighbour's similarity and appended to `image`. Bridges small holes;
+  /// `scale`, plane units per scene unit, says what is small. Returns how many faces were added.
+  std::size_t grow(ImagePoints& image, IdVector<PatchVertexId, char>& inside, double scale,
+                   const Limits& limits);
 
   /// Covers what the patch has grown round without growing over: an uncovered part of the surface with a
   /// small rim, such as the bottom of a pit whose image was predicted outside the region. Without it the two
   /// fronts that met behind the pit would stay apart for ever. Returns how many faces were added.
-  std::size_t fill_pockets(ImagePoints& image, IdVector<PatchVertexId, char>& inside);
+  std::size_t fill_pockets(ImagePoints& image, IdVector<PatchVertexId, char>& inside, double scale);
 
   /// Drops dead ids; `image` follows.
   void compact(ImagePoints& image);
@@ -70,9 +71,7 @@ class Growth {
                                         std::span<const PatchFaceId> candidates) const;
   ImmersedDisc::Glue glue(PatchFaceId q, int k, ImagePoints& image, IdVector<PatchVertexId, char>& inside);
   [[nodiscard]] bool face_meets_region(PatchFaceId q, const ImagePoints& image) const;
-  /// Plane units per scene unit, over the whole disc.
-  [[nodiscard]] double mean_scale(const ImagePoints& image) const;
-  bool bridge_hole(PatchFaceId q, int k, const ImagePoints& image);
+  bool bridge_hole(PatchFaceId q, int k, double scale);
 
   ImmersedDisc& disc_;
   std::vector<PatchFaceId> feature_faces_;
