@@ -18,7 +18,6 @@ namespace {
 constexpr std::uint32_t cover_limit = 1;      // one sheet
 constexpr double linear_tolerance_px = 0.02;  // §5.1 of the design
 constexpr double coincident = 1e-6;           // of the region's diameter
-constexpr int most_trims = 3;
 
 /// Adds the time until its end to a counter, in seconds.
 class StageTimer {
@@ -197,24 +196,28 @@ class Solver {
                             feature_name(input_, i), feature_name(input_, j)));
   }
 
-  /// Embeds, aligns and warps the disc as it is: plane_, image_ and built_.
+  /// Embeds, aligns and warps the disc as it is: points_ and built_.
   Result<void> parameterize(const ImmersedDisc& disc, const Growth& growth, Energy energy) {
     ++map_.solves;
     std::vector<Vec2> features(targets_.size());
+    std::vector<Vec2> plane;
     {
       StageTimer stage(map_.times.embed);
-      Embedding embedding = embed_disc(measure_disc(disc), {energy});
+      // The last embedding, undone to the surface's scale, is where an isometric one may start from.
+      std::vector<Vec2> start;
+      if (rung_ == EmbeddingRung::descended)
+        for (const PatchPoint& point : points_) start.push_back(point.plane / scale_);
+      Embedding embedding = embed_disc(measure_disc(disc), {energy}, start);
       rung_ = embedding.rung;
+      plane = std::move(embedding.plane);
       for (std::size_t k = 0; k < features.size(); ++k)
-        features[k] =
-            interpolate(disc, growth.feature_faces()[k], input_.features[k].surface, embedding.plane);
-      APPLIQUE_CHECK(align(disc, growth, features, embedding.plane));
-      plane_ = ImagePoints(std::move(embedding.plane));
+        features[k] = interpolate(disc, growth.feature_faces()[k], input_.features[k].surface, plane);
+      APPLIQUE_CHECK(align(disc, growth, features, plane));
     }
     StageTimer stage(map_.times.warp);
     built_ = build_warp(features, targets_, map_.graph, probes(features));
-    image_.resize(plane_.size());
-    for (PatchVertexId v : ids<PatchVertexId>(plane_.size())) image_[v] = built_.warp(plane_[v]);
+    points_.clear();
+    for (Vec2 z : plane) points_.push_back({z, built_.warp(z)});
     return {};
   }
 
@@ -265,34 +268,32 @@ class Solver {
   }
 
   /// The loop of §2.6 of the design: parameterize, peel, grow, until the region is covered. The conformal
-  /// map, which costs a third of the isometric one, does while the patch is far from its final size. At the
-  /// end the patch is trimmed to the faces that meet the region, so that the result does not depend on the
-  /// way it came about.
+  /// map, which costs a third of the isometric one, does while the patch is far from its final size.
   Result<void> grow(ImmersedDisc& disc, Growth& growth) {
-    int trims = 0;
     Energy energy = Energy::conformal;
+    bool padded = false;
     while (true) {
       APPLIQUE_CHECK(parameterize(disc, growth, energy));
       StageTimer stage(map_.times.grow);
       if (map_.solves >= options_.max_solves) break;
-      auto inside = growth.inside(image_);
-      const std::size_t peeled = trims == 0 ? growth.peel(image_, inside) : 0;
+      auto inside = growth.inside(points_);
+      const std::size_t peeled = energy == Energy::conformal && !padded ? growth.peel(points_, inside) : 0;
       const std::size_t added =
-          growth.grow(image_, inside, scale_, {}) + growth.fill_pockets(image_, inside, scale_);
+          growth.grow(points_, inside, scale_, {}) + growth.fill_pockets(points_, inside, scale_);
       if (added == 0 && peeled == 0) {
         if (energy != options_.energy) {
           energy = options_.energy;
           continue;
         }
-        if (trims == most_trims || growth.trim(image_) == 0) break;
-        ++trims;
+        if (padded || growth.pad(points_) == 0) break;
+        padded = true;
       }
-      growth.compact(image_);
+      growth.compact(points_);
 #ifdef APPLIQUE_CHECK_INVARIANTS
       APPLIQUE_ASSERT(disc.broken_invariant().empty());
 #endif
     }
-    map_.status = growth.coverage(image_);
+    map_.status = growth.coverage(points_);
     return {};
   }
 
@@ -303,15 +304,17 @@ class Solver {
       map_.patch.faces.push_back(face);
       if (bridge) map_.patch.faces.raw().back().mesh_face = FaceId();
       const auto& v = face.vertices;
-      map_.textured.push_back(!bridge &&
-                              input_.region.meets_triangle(image_[v[0]], image_[v[1]], image_[v[2]]));
+      map_.textured.push_back(!bridge && input_.region.meets_triangle(
+                                             points_[v[0]].image, points_[v[1]].image, points_[v[2]].image));
     }
     for (PatchVertexId v : ids<PatchVertexId>(disc.vertex_count())) {
       const VertexId over = disc.mesh_vertex(v);
       map_.patch.vertices.push_back(bridged_.is_bridge(over) ? VertexId() : over);
     }
-    map_.plane = std::move(plane_);
-    map_.image = std::move(image_);
+    for (const PatchPoint& point : points_) {
+      map_.plane.push_back(point.plane);
+      map_.image.push_back(point.image);
+    }
     map_.warp = std::move(built_.warp);
     map_.depth.resize(map_.patch.faces.size(), 0);
     map_.influence.assign(map_.patch.vertices.size(), 1);
@@ -402,7 +405,7 @@ class Solver {
   const SolveOptions& options_;
   BridgedSurface bridged_;
   std::vector<Vec2> targets_;  ///< Features in the image, plane units.
-  ImagePoints plane_, image_;
+  PatchPoints points_;
   BuiltWarp built_;
   EmbeddingRung rung_ = EmbeddingRung::conformal;
   double scale_ = 1;  ///< Of the alignment, plane units per scene unit.

@@ -45,9 +45,13 @@ const CodeEntry& entry_of(ErrorCode code) {
 
 }  // namespace
 
-std::string_view name_of(ErrorCode code) { return entry_of(code).name; }
+std::string_view name_of(ErrorCode code) {
+  return entry_of(code).name;
+}
 
-int exit_status(ErrorCode code) { return entry_of(code).exit_status; }
+int exit_status(ErrorCode code) {
+  return entry_of(code).exit_status;
+}
 
 void assertion_failed(const char* condition, const char* file, int line) {
   std::fprintf(stderr, "%s:%d: assertion failed: %s\n", file, line, condition);

@@ -8,7 +8,6 @@
 #include "applique/embed/collapse.h"
 #include "applique/embed/mean_value.h"
 #include "applique/embed/symmetric_dirichlet.h"
-#include "applique/embed/unfold.h"
 
 namespace applique {
 namespace {
@@ -26,18 +25,17 @@ void scale_to_area(const DiscGeometry& disc, std::vector<Vec2>& plane) {
   for (Vec2& z : plane) z *= scale;
 }
 
-/// Goes from `start`, which turns nothing over, towards `goal`, nine tenths of the way to the first collapse.
-std::vector<Vec2> blend_before_fold(const DiscGeometry& disc, const std::vector<Vec2>& start,
-                                    const std::vector<Vec2>& goal) {
-  const double t = std::min(1.0, 0.9 * first_collapse(disc, start, goal));
-  std::vector<Vec2> plane(start.size());
-  for (std::size_t v = 0; v < plane.size(); ++v) plane[v] = start[v] + t * (goal[v] - start[v]);
-  return plane;
+Embedding descend(const DiscGeometry& disc, std::vector<Vec2> start) {
+  Embedding embedding{relax_symmetric_dirichlet(disc, std::move(start)), EmbeddingRung::descended, 0};
+  embedding.flips = count_flips(disc, embedding.plane);
+  return embedding;
 }
 
 }  // namespace
 
-Embedding embed_disc(const DiscGeometry& disc, const EmbedOptions& options) {
+Embedding embed_disc(const DiscGeometry& disc, const EmbedOptions& options, const std::vector<Vec2>& start) {
+  if (options.energy == Energy::isometric && !start.empty() && count_flips(disc, start) == 0)
+    return descend(disc, start);
   Embedding embedding{flatten_boundary_first(disc), EmbeddingRung::conformal, 0};
   if (!finite(embedding.plane) || (embedding.flips = count_flips(disc, embedding.plane)) > 0) {
     std::vector<Vec2> circle = embed_on_circle(disc);
@@ -51,13 +49,11 @@ Embedding embed_disc(const DiscGeometry& disc, const EmbedOptions& options) {
   std::vector<Vec2> relaxed = relax_arap(disc, embedding.plane, {options.max_iterations, options.tolerance});
   if (finite(relaxed)) {
     const std::size_t flips = count_flips(disc, relaxed);
-    if (flips == 0) return {std::move(relaxed), EmbeddingRung::isometric, 0};
-    if (embedding.flips > 0) return {std::move(relaxed), EmbeddingRung::isometric, flips};
-    std::vector<Vec2> start = blend_before_fold(disc, embedding.plane, relaxed);
-    embedding = {relax_symmetric_dirichlet(disc, std::move(start)), EmbeddingRung::descended, 0};
-    embedding.flips = count_flips(disc, embedding.plane);
+    if (flips == 0 || embedding.flips > 0) return {std::move(relaxed), EmbeddingRung::isometric, flips};
   }
-  return embedding;
+  // A blend that stops before ARAP's first fold starts the descent next to its barrier, which costs more
+  // steps than the flip-free map itself does.
+  return descend(disc, std::move(embedding.plane));
 }
 
 }  // namespace applique

@@ -13,9 +13,9 @@ enum class Energy { isometric, conformal };
 enum class EmbeddingRung {
   conformal,  ///< Boundary-first flattening as asked for.
   isometric,  ///< ARAP as asked for.
-  descended,  ///< ARAP folded: blended from the flip-free map towards it before the first fold, and from
-              ///< there down the symmetric Dirichlet energy, which no fold can pass.
-  circle,  ///< The conformal map folded; the flip-free map on a circle took its place.
+  descended,  ///< ARAP folded: down the symmetric Dirichlet energy from the flip-free map, which no fold can
+              ///< pass.
+  circle,     ///< The conformal map folded; the flip-free map on a circle took its place.
 };
 
 struct Embedding {
@@ -32,6 +32,10 @@ struct EmbedOptions {
 
 /// Embeds the disc in the plane with a free boundary (§5.1 of the paper; §4.2 and §4.3 of the design):
 /// conformal, then as rigid as possible; turned-over triangles are looked for after each solve.
-Embedding embed_disc(const DiscGeometry& disc, const EmbedOptions& options = {});
+///
+/// `start`, when given, is an embedding of the disc's own scale that the isometric descent may begin at; one
+/// that turns triangles over is not used.
+Embedding embed_disc(const DiscGeometry& disc, const EmbedOptions& options = {},
+                     const std::vector<Vec2>& start = {});
 
 }  // namespace applique

@@ -23,11 +23,11 @@ Growth::Growth(ImmersedDisc& disc, std::vector<PatchFaceId> feature_faces, const
                std::uint32_t cover_limit)
     : disc_(disc), feature_faces_(std::move(feature_faces)), region_(region), cover_limit_(cover_limit) {}
 
-IdVector<PatchVertexId, char> Growth::inside(const ImagePoints& image) const {
+IdVector<PatchVertexId, char> Growth::inside(const PatchPoints& points) const {
   IdVector<PatchVertexId, char> inside(disc_.vertex_count(), false);
   std::vector<PatchVertexId> stack;
   const auto visit = [&](PatchVertexId v) {
-    if (inside[v] || !region_.contains(image[v])) return;
+    if (inside[v] || !region_.contains(points[v].image)) return;
     inside[v] = true;
     stack.push_back(v);
   };
@@ -42,19 +42,19 @@ IdVector<PatchVertexId, char> Growth::inside(const ImagePoints& image) const {
   return inside;
 }
 
-bool Growth::face_meets_region(PatchFaceId q, const ImagePoints& image) const {
+bool Growth::face_meets_region(PatchFaceId q, const PatchPoints& points) const {
   const auto& v = disc_.faces()[q].vertices;
-  return region_.meets_triangle(image[v[0]], image[v[1]], image[v[2]]);
+  return region_.meets_triangle(points[v[0]].image, points[v[1]].image, points[v[2]].image);
 }
 
-std::size_t Growth::peel(const ImagePoints& image, const IdVector<PatchVertexId, char>& inside) {
+std::size_t Growth::peel(const PatchPoints& points, const IdVector<PatchVertexId, char>& inside) {
   const std::size_t count = disc_.faces().size();
   // A face stays when it or a face round one of its corners has a vertex inside.
   IdVector<PatchVertexId, char> near(disc_.vertex_count(), false);
   for (PatchFaceId q : ids<PatchFaceId>(count)) {
     if (!disc_.alive(q)) continue;
     const auto& v = disc_.faces()[q].vertices;
-    if (inside[v[0]] || inside[v[1]] || inside[v[2]] || face_meets_region(q, image))
+    if (inside[v[0]] || inside[v[1]] || inside[v[2]] || face_meets_region(q, points))
       for (PatchVertexId w : v) near[w] = true;
   }
   const auto unwanted = [&](PatchFaceId q) {
@@ -78,24 +78,46 @@ std::size_t Growth::peel(const ImagePoints& image, const IdVector<PatchVertexId,
   return removed;
 }
 
-std::size_t Growth::trim(const ImagePoints& image) {
+std::size_t Growth::pad(PatchPoints& points) {
+  const std::size_t count = disc_.faces().size();
+  IdVector<PatchVertexId, char> near(disc_.vertex_count(), false);
   std::vector<PatchFaceId> work;
-  for (PatchFaceId q : ids<PatchFaceId>(disc_.faces().size()))
-    if (disc_.alive(q)) work.push_back(q);
-  std::size_t removed = 0;
+  for (PatchFaceId q : ids<PatchFaceId>(count)) {
+    if (!disc_.alive(q)) continue;
+    work.push_back(q);
+    if (face_meets_region(q, points))
+      for (PatchVertexId v : disc_.faces()[q].vertices) near[v] = true;
+  }
+  const auto touches = [&](PatchFaceId q) {
+    const auto& v = disc_.faces()[q].vertices;
+    return near[v[0]] || near[v[1]] || near[v[2]];
+  };
+  std::size_t changed = 0;
   for (std::size_t i = 0; i < work.size(); ++i) {
     const PatchFaceId q = work[i];
-    if (!disc_.alive(q) || !disc_.removable(q) || face_meets_region(q, image)) continue;
+    if (!disc_.alive(q) || touches(q) || !disc_.removable(q)) continue;
     const PatchFace face = disc_.faces()[q];
     disc_.remove(q);
-    ++removed;
+    ++changed;
     for (PatchFaceId across : face.neighbours)
       if (across.valid()) work.push_back(across);
   }
-  return removed;
+  IdVector<PatchVertexId, char> inside(disc_.vertex_count(), false);
+  near.resize(disc_.vertex_count(), false);
+  for (PatchVertexId v : ids<PatchVertexId>(near.size())) {
+    if (!near[v] || !disc_.alive(v)) continue;
+    PatchVertexId at = v;
+    while (const auto side = disc_.open_side(at)) {
+      if (glue(side->face, side->edge, points, inside) != ImmersedDisc::Glue::glued) break;
+      ++changed;
+      at = disc_.survivor(at);
+    }
+  }
+  return changed;
 }
 
-std::vector<Growth::Side> Growth::front(const ImagePoints& image, const IdVector<PatchVertexId, char>& inside,
+std::vector<Growth::Side> Growth::front(const PatchPoints& points,
+                                        const IdVector<PatchVertexId, char>& inside,
                                         std::span<const PatchFaceId> candidates) const {
   std::vector<Side> front;
   for (PatchFaceId q : candidates) {
@@ -104,8 +126,8 @@ std::vector<Growth::Side> Growth::front(const ImagePoints& image, const IdVector
     for (int k = 0; k < 3; ++k) {
       if (face.neighbours[k].valid()) continue;
       const PatchVertexId a = face.vertices[(k + 1) % 3], b = face.vertices[(k + 2) % 3];
-      if (inside[a] || inside[b] || region_.meets_segment(image[a], image[b]))
-        front.push_back({q, k, 0.5 * (image[a] + image[b])});
+      if (inside[a] || inside[b] || region_.meets_segment(points[a].image, points[b].image))
+        front.push_back({q, k, 0.5 * (points[a].image + points[b].image)});
     }
   }
   std::sort(front.begin(), front.end(), [](const Side& a, const Side& b) {
@@ -115,22 +137,23 @@ std::vector<Growth::Side> Growth::front(const ImagePoints& image, const IdVector
 }
 
 /// Glues the face across edge k of q, which becomes the disc's last, and predicts its new vertex.
-ImmersedDisc::Glue Growth::glue(PatchFaceId q, int k, ImagePoints& image,
+ImmersedDisc::Glue Growth::glue(PatchFaceId q, int k, PatchPoints& points,
                                 IdVector<PatchVertexId, char>& inside) {
   const PatchFace face = disc_.faces()[q];
   const ImmersedDisc::GlueResult result = disc_.glue(q, k, cover_limit_);
   if (result.outcome != ImmersedDisc::Glue::glued) return result.outcome;
-  image.resize(disc_.vertex_count());
+  points.resize(disc_.vertex_count());
   inside.resize(disc_.vertex_count(), false);
   if (result.merged) return result.outcome;
   const PatchVertexId a = face.vertices[(k + 1) % 3], b = face.vertices[(k + 2) % 3];
   const Vec2 apex = apex_in_edge_frame(disc_.position(a), disc_.position(b), disc_.position(result.vertex));
-  image[result.vertex] = image[a] + (image[b] - image[a]) * apex;
-  inside[result.vertex] = (inside[a] || inside[b]) && region_.contains(image[result.vertex]);
+  points[result.vertex] = {points[a].plane + (points[b].plane - points[a].plane) * apex,
+                           points[a].image + (points[b].image - points[a].image) * apex};
+  inside[result.vertex] = (inside[a] || inside[b]) && region_.contains(points[result.vertex].image);
   return result.outcome;
 }
 
-std::size_t Growth::grow(ImagePoints& image, IdVector<PatchVertexId, char>& inside, double scale,
+std::size_t Growth::grow(PatchPoints& points, IdVector<PatchVertexId, char>& inside, double scale,
                          const Limits& limits) {
   const std::size_t most = static_cast<std::size_t>(limits.growth * static_cast<double>(disc_.live_faces()));
   std::vector<PatchFaceId> candidates;
@@ -139,11 +162,11 @@ std::size_t Growth::grow(ImagePoints& image, IdVector<PatchVertexId, char>& insi
   std::size_t added = 0;
   for (int ring = 0; ring < limits.rings && disc_.live_faces() < most && !candidates.empty(); ++ring) {
     std::vector<PatchFaceId> fresh;
-    for (const Side& side : front(image, inside, candidates)) {
+    for (const Side& side : front(points, inside, candidates)) {
       if (disc_.faces()[side.face].neighbours[side.edge].valid()) continue;  // zipped meanwhile
-      ImmersedDisc::Glue outcome = glue(side.face, side.edge, image, inside);
+      ImmersedDisc::Glue outcome = glue(side.face, side.edge, points, inside);
       if (outcome == ImmersedDisc::Glue::boundary && bridge_hole(side.face, side.edge, scale))
-        outcome = glue(side.face, side.edge, image, inside);
+        outcome = glue(side.face, side.edge, points, inside);
       if (outcome == ImmersedDisc::Glue::glued) fresh.emplace_back(disc_.faces().size() - 1);
     }
     added += fresh.size();
@@ -152,7 +175,7 @@ std::size_t Growth::grow(ImagePoints& image, IdVector<PatchVertexId, char>& insi
   return added;
 }
 
-std::size_t Growth::fill_pockets(ImagePoints& image, IdVector<PatchVertexId, char>& inside, double scale) {
+std::size_t Growth::fill_pockets(PatchPoints& points, IdVector<PatchVertexId, char>& inside, double scale) {
   const BridgedSurface& surface = disc_.surface();
   const double longest_rim = longest_pocket_rim * region_.diameter() / scale;
   const auto area_of = [&](FaceId f) {
@@ -210,7 +233,7 @@ std::size_t Growth::fill_pockets(ImagePoints& image, IdVector<PatchVertexId, cha
       if (face.neighbours[k].valid() || !beyond.valid()) continue;
       const auto mark = marks.find(beyond);
       if (mark == marks.end() || mark->second == Mark::open) continue;
-      added += glue(q, k, image, inside) == ImmersedDisc::Glue::glued;
+      added += glue(q, k, points, inside) == ImmersedDisc::Glue::glued;
     }
   }
   return added;
@@ -224,16 +247,16 @@ bool Growth::bridge_hole(PatchFaceId q, int k, double scale) {
   return true;
 }
 
-void Growth::compact(ImagePoints& image) {
+void Growth::compact(PatchPoints& points) {
   const ImmersedDisc::Renumbering map = disc_.compact();
-  ImagePoints compacted(disc_.vertex_count());
+  PatchPoints compacted(disc_.vertex_count());
   for (PatchVertexId v : ids<PatchVertexId>(map.vertices.size()))
-    if (map.vertices[v].valid()) compacted[map.vertices[v]] = image[v];
-  image = std::move(compacted);
+    if (map.vertices[v].valid()) compacted[map.vertices[v]] = points[v];
+  points = std::move(compacted);
   for (PatchFaceId& q : feature_faces_) q = map.faces[q];
 }
 
-Coverage Growth::coverage(const ImagePoints& image) const {
+Coverage Growth::coverage(const PatchPoints& points) const {
   Coverage worst = Coverage::covered;
   for (PatchFaceId q : ids<PatchFaceId>(disc_.faces().size())) {
     if (!disc_.alive(q)) continue;
@@ -241,7 +264,7 @@ Coverage Growth::coverage(const ImagePoints& image) const {
     for (int k = 0; k < 3; ++k) {
       if (face.neighbours[k].valid()) continue;
       const PatchVertexId a = face.vertices[(k + 1) % 3], b = face.vertices[(k + 2) % 3];
-      if (!region_.meets_segment(image[a], image[b])) continue;
+      if (!region_.meets_segment(points[a].image, points[b].image)) continue;
       const FaceId beyond = disc_.surface().neighbour(face.mesh_face, k);
       const Coverage here = !beyond.valid()                       ? Coverage::clipped_by_boundary
                             : disc_.cover(beyond) >= cover_limit_ ? Coverage::clipped_by_cover

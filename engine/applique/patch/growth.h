@@ -9,8 +9,14 @@
 
 namespace applique {
 
-/// Image points of a disc's vertices, dead ones included.
-using ImagePoints = IdVector<PatchVertexId, Vec2>;
+/// Where a patch vertex is: in the embedding, and in the image.
+struct PatchPoint {
+  Vec2 plane;
+  Vec2 image;
+};
+
+/// Of all a disc's vertices, dead ones included.
+using PatchPoints = IdVector<PatchVertexId, PatchPoint>;
 
 /// How the growth ended (§2.7 of the design).
 enum class Coverage {
@@ -30,33 +36,35 @@ class Growth {
          std::uint32_t cover_limit);
 
   /// Vertices inside the region that are connected with a feature through such vertices: the set S of §5.2.1.
-  [[nodiscard]] IdVector<PatchVertexId, char> inside(const ImagePoints& image) const;
+  [[nodiscard]] IdVector<PatchVertexId, char> inside(const PatchPoints& points) const;
 
   /// Removes faces that lie outside the region together with their one-rings. Returns how many.
-  std::size_t peel(const ImagePoints& image, const IdVector<PatchVertexId, char>& inside);
-  /// Removes every face that does not meet the region, also those peeled before. Returns how many.
-  std::size_t trim(const ImagePoints& image);
+  std::size_t peel(const PatchPoints& points, const IdVector<PatchVertexId, char>& inside);
+  /// Makes the margin one ring wide all round: removes every face that does not touch one that meets the
+  /// region, also where it was peeled before, and completes the fans of those that do. So the patch does not
+  /// depend on the way it came about. Returns how many faces were removed or added.
+  std::size_t pad(PatchPoints& points);
 
   struct Limits {
     int rings = 32;
     double growth = 8;  ///< No further ring once the patch is this many times its size.
   };
-  /// Glues rings of faces at the boundary where it lies in the region; the image points of new vertices are
-  /// predicted by continuing the neighbour's similarity and appended to `image`. Bridges small holes;
+  /// Glues rings of faces at the boundary where it lies in the region; where new vertices lie is
+  /// predicted by continuing the neighbour's similarity and appended to `points`. Bridges small holes;
   /// `scale`, plane units per scene unit, says what is small. Returns how many faces were added.
-  std::size_t grow(ImagePoints& image, IdVector<PatchVertexId, char>& inside, double scale,
+  std::size_t grow(PatchPoints& points, IdVector<PatchVertexId, char>& inside, double scale,
                    const Limits& limits);
 
   /// Covers what the patch has grown round without growing over: an uncovered part of the surface with a
   /// small rim, such as the bottom of a pit whose image was predicted outside the region. Without it the two
   /// fronts that met behind the pit would stay apart for ever. Returns how many faces were added.
-  std::size_t fill_pockets(ImagePoints& image, IdVector<PatchVertexId, char>& inside, double scale);
+  std::size_t fill_pockets(PatchPoints& points, IdVector<PatchVertexId, char>& inside, double scale);
 
-  /// Drops dead ids; `image` follows.
-  void compact(ImagePoints& image);
+  /// Drops dead ids; `points` follows.
+  void compact(PatchPoints& points);
 
   /// Why the boundary cannot move on where it lies in the region, or that it nowhere does.
-  [[nodiscard]] Coverage coverage(const ImagePoints& image) const;
+  [[nodiscard]] Coverage coverage(const PatchPoints& points) const;
 
   [[nodiscard]] const std::vector<PatchFaceId>& feature_faces() const { return feature_faces_; }
 
@@ -67,10 +75,11 @@ class Growth {
     Vec2 middle;  ///< In the image: the order of gluing, so that it does not depend on how the model is
                   ///< numbered.
   };
-  [[nodiscard]] std::vector<Side> front(const ImagePoints& image, const IdVector<PatchVertexId, char>& inside,
+  [[nodiscard]] std::vector<Side> front(const PatchPoints& points,
+                                        const IdVector<PatchVertexId, char>& inside,
                                         std::span<const PatchFaceId> candidates) const;
-  ImmersedDisc::Glue glue(PatchFaceId q, int k, ImagePoints& image, IdVector<PatchVertexId, char>& inside);
-  [[nodiscard]] bool face_meets_region(PatchFaceId q, const ImagePoints& image) const;
+  ImmersedDisc::Glue glue(PatchFaceId q, int k, PatchPoints& points, IdVector<PatchVertexId, char>& inside);
+  [[nodiscard]] bool face_meets_region(PatchFaceId q, const PatchPoints& points) const;
   bool bridge_hole(PatchFaceId q, int k, double scale);
 
   ImmersedDisc& disc_;

@@ -162,6 +162,11 @@ void ImmersedDisc::merge(PatchVertexId from, PatchVertexId into) {
   dead = {dead.mesh_vertex, {}, 0, into};
 }
 
+std::optional<ImmersedDisc::Side> ImmersedDisc::open_side(PatchVertexId v) const {
+  const Side out = outgoing_boundary(v);
+  return out.face.valid() ? std::optional(out) : std::nullopt;
+}
+
 PatchVertexId ImmersedDisc::complete_fan(PatchVertexId v, std::uint32_t cover_limit) {
   while (!full(v)) {
     const Side out = outgoing_boundary(v);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <unordered_map>
 #include <vector>
@@ -45,6 +46,13 @@ class ImmersedDisc {
   /// Glues faces round vertex v until its fan is closed or nothing more can be glued. Returns v, or the
   /// vertex that it was merged into.
   PatchVertexId complete_fan(PatchVertexId v, std::uint32_t cover_limit);
+
+  /// A boundary edge at v, as the face and the edge to glue across; nothing when v is interior.
+  struct Side {
+    PatchFaceId face;
+    int edge = 0;
+  };
+  [[nodiscard]] std::optional<Side> open_side(PatchVertexId v) const;
 
   /// Whether removing q keeps the disc: an ear (two boundary edges), or one boundary edge and an interior
   /// vertex opposite. Pinned faces are not removable.
@@ -92,10 +100,6 @@ class ImmersedDisc {
     PatchFaceId face;           ///< One live face at the vertex; invalid when dead.
     std::uint32_t fan = 0;      ///< Number of live faces at the vertex.
     PatchVertexId merged_into;  ///< For dead vertices that were merged.
-  };
-  struct Side {
-    PatchFaceId face;
-    int edge = 0;
   };
 
   [[nodiscard]] bool full(PatchVertexId v) const {
