@@ -13,25 +13,25 @@ class GpuTest : public testing::Test {
  protected:
   static void SetUpTestSuite() {
     auto created = Device::create({"", true});
-    if (created) device_ = std::make_unique<Device>(std::move(*created));
-    reason_ = created ? "" : created.error().message;
+    if (created) shared_device = std::make_unique<Device>(std::move(*created));
+    why_none = created ? "" : created.error().message;
   }
-  static void TearDownTestSuite() { device_.reset(); }
+  static void TearDownTestSuite() { shared_device.reset(); }
 
   void SetUp() override {
-    if (!device_) GTEST_SKIP() << "there is no Vulkan device: " << reason_;
+    if (!shared_device) GTEST_SKIP() << "there is no Vulkan device: " << why_none;
     seen_ = device().validation_messages().size();
   }
   void TearDown() override {
-    if (!device_) return;
+    if (!shared_device) return;
     const auto messages = device().validation_messages();
     for (std::size_t i = seen_; i < messages.size(); ++i) ADD_FAILURE() << messages[i];
   }
-  static Device& device() { return *device_; }
+  static Device& device() { return *shared_device; }
 
  private:
-  static inline std::unique_ptr<Device> device_;
-  static inline std::string reason_;
+  static inline std::unique_ptr<Device> shared_device;
+  static inline std::string why_none;
   std::size_t seen_ = 0;
 };
 

@@ -25,7 +25,8 @@ Warp random_warp(std::mt19937& random, int features) {
       warp.pairs.push_back({static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(k)});
   }
   for (std::uint32_t stage = 0; stage < 3 * warp.steps; ++stage) {
-    const double t = (stage / 3 + 0.5 * (stage % 3)) / warp.steps;
+    const std::uint32_t step = stage / 3;
+    const double t = (step + 0.5 * (stage % 3)) / warp.steps;
     for (std::uint32_t k = 0; k < warp.features; ++k)
       warp.position.push_back(from[k] + t * (to[k] - from[k]));
     for (const auto& [i, j] : warp.pairs) {
