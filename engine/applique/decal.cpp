@@ -319,8 +319,8 @@ class Solver {
     map_.depth.resize(map_.patch.faces.size(), 0);
     map_.influence.assign(map_.patch.vertices.size(), 1);
     mark_linear_faces(growth);
-    map_.quality =
-        measure_quality(surface_, map_.patch, map_.plane, map_.image, map_.textured, input_.region);
+    map_.quality = measure_quality(surface_, map_.patch, map_.plane, map_.image, map_.textured, map_.warp,
+                                   input_.region);
     for (std::size_t k = 0; k < targets_.size(); ++k) {
       const Vec2 at = map_.warp(
           interpolate(disc, growth.feature_faces()[k], input_.features[k].surface, map_.plane.raw()));

@@ -24,6 +24,19 @@ Singular singular_values(const std::array<Vec3, 3>& q, const std::array<Vec2, 3>
   return {std::sqrt(0.5 * (a + c + root)), std::sqrt(std::max(0.0, 0.5 * (a + c - root)))};
 }
 
+/// Whether the warp reverses orientation at a corner of the triangle or in its middle, by central
+/// differences.
+bool turns_over(const Warp& warp, const std::array<Vec2, 3>& triangle) {
+  constexpr double step = 1e-6;
+  for (const Vec2 z :
+       {triangle[0], triangle[1], triangle[2], (triangle[0] + triangle[1] + triangle[2]) / 3.0}) {
+    const Vec2 along_x = warp(z + step) - warp(z - step);
+    const Vec2 along_y = warp(z + Vec2(0, step)) - warp(z - Vec2(0, step));
+    if (cross(along_x, along_y) <= 0) return true;
+  }
+  return false;
+}
+
 /// Sutherland and Hodgman: the part of the polygon to the left of a -> b.
 std::vector<Vec2> clip(const std::vector<Vec2>& polygon, Vec2 a, Vec2 b) {
   std::vector<Vec2> kept;
@@ -55,7 +68,8 @@ double area_in_region(const Region& region, const std::array<Vec2, 3>& triangle)
 MapQuality measure_quality(const SurfaceMesh& surface, const Patch& patch,
                            const IdVector<PatchVertexId, Vec2>& plane,
                            const IdVector<PatchVertexId, Vec2>& image,
-                           const IdVector<PatchFaceId, char>& textured, const Region& region) {
+                           const IdVector<PatchFaceId, char>& textured, const Warp& warp,
+                           const Region& region) {
   MapQuality quality;
   struct Measured {
     Singular singular;
@@ -66,10 +80,12 @@ MapQuality measure_quality(const SurfaceMesh& surface, const Patch& patch,
   for (PatchFaceId q : ids<PatchFaceId>(patch.faces.size())) {
     if (!textured[q]) continue;
     const auto& v = patch.faces[q].vertices;
-    if (orientation(plane[v[0]], plane[v[1]], plane[v[2]]) <= 0) ++quality.flipped_plane;
+    const std::array<Vec2, 3> flat = {plane[v[0]], plane[v[1]], plane[v[2]]};
+    const bool flipped = orientation(flat[0], flat[1], flat[2]) <= 0;
+    quality.flipped_plane += flipped;
     const std::array<Vec2, 3> p = {image[v[0]], image[v[1]], image[v[2]]};
     if (orientation(p[0], p[1], p[2]) <= 0) {
-      ++quality.flipped_image;
+      quality.flipped_image += flipped || turns_over(warp, flat);
       continue;
     }
     const std::array<Vec3, 3> corners = surface.corners(patch.faces[q].mesh_face);

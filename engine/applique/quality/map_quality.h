@@ -8,6 +8,7 @@
 #include "applique/patch/patch.h"
 #include "applique/region/region.h"
 #include "applique/surface/surface_mesh.h"
+#include "applique/warp/warp.h"
 
 namespace applique {
 
@@ -32,7 +33,8 @@ struct MapQuality {
 MapQuality measure_quality(const SurfaceMesh& surface, const Patch& patch,
                            const IdVector<PatchVertexId, Vec2>& plane,
                            const IdVector<PatchVertexId, Vec2>& image,
-                           const IdVector<PatchFaceId, char>& textured, const Region& region);
+                           const IdVector<PatchFaceId, char>& textured, const Warp& warp,
+                           const Region& region);
 
 /// The area that a triangle, counter-clockwise, has in common with the region.
 double area_in_region(const Region& region, const std::array<Vec2, 3>& triangle);
