@@ -25,7 +25,7 @@ SyntheticTransfer decal(int features, double nonlinear) {
 void transfer_from_nothing(benchmark::State& state) {
   const SyntheticTransfer synthetic = decal(6, static_cast<double>(state.range(0)) / 100);
   const Image texture = noise_texture(1, 2048, 2048);
-  for (auto _ : state) {
+  while (state.KeepRunning()) {
     Image result = texture;
     const Device device = Device::create({"", false}).value();
     GpuTransfer gpu = GpuTransfer::create(device).value();
@@ -41,7 +41,7 @@ void transfer_on_gpu(benchmark::State& state) {
   const Device device = Device::create({"", false}).value();
   GpuTransfer gpu = GpuTransfer::create(device).value();
   std::uint64_t texels = 0;
-  for (auto _ : state) {
+  while (state.KeepRunning()) {
     Image result = texture;
     texels = gpu.run(synthetic.transfer, result).value().covered_texels;
   }
@@ -53,7 +53,7 @@ void transfer_on_cpu_twin(benchmark::State& state) {
   const SyntheticTransfer synthetic =
       decal(static_cast<int>(state.range(0)), static_cast<double>(state.range(1)) / 100);
   const Image texture = noise_texture(1, 2048, 2048);
-  for (auto _ : state) {
+  while (state.KeepRunning()) {
     Image result = texture;
     benchmark::DoNotOptimize(transfer_on_cpu(synthetic.transfer, result));
   }
