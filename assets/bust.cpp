@@ -110,20 +110,20 @@ double lid_opening(const Vec3& p) {
     const double radius = (half * half + rise * rise) / (2 * rise);
     return std::abs(z - (middle - side * up * (radius - rise))) - radius;
   };
-  return std::max(disc(upper_lid_rise, 1), disc(lower_lid_drop, -1));
+  return smooth_intersection(disc(upper_lid_rise, 1), disc(lower_lid_drop, -1), 0.03);
 }
 
 double with_eyes(double d, const Vec3& q) {
-  static const auto upper_rim = lid_tube<9>(upper_lid_rise, eye_radius + 0.02, 0.025, 0.0, 1.02);
-  static const auto lower_rim = lid_tube<9>(-lower_lid_drop, eye_radius + 0.006, 0.018, 0.02, 0.98);
+  static const auto upper_rim = lid_tube<9>(upper_lid_rise, eye_radius + 0.016, 0.021, 0.0, 1.0);
+  static const auto lower_rim = lid_tube<9>(-lower_lid_drop, eye_radius + 0.004, 0.016, 0.02, 0.98);
   static const auto crease = lid_tube<9>(0.142, eye_radius + 0.045, 0.018, 0.02, 1.06);
   if (sphere(q, eye_centre, 0.32) > 0) return d;
   d = smooth_union(d, sphere(q, eye_centre, eye_radius + 0.022), 0.05);
   d = smooth_difference(d, tube(q, crease), 0.05);
   d = smooth_union(d, tube(q, upper_rim), 0.035);
   d = smooth_union(d, tube(q, lower_rim), 0.035);
-  d = smooth_difference(d, std::max(lid_opening(q), eye_centre.z() - q.z()), 0.024);
-  return smooth_union(d, sphere(q, eye_centre, eye_radius), 0.018);
+  d = smooth_difference(d, std::max(lid_opening(q), eye_centre.z() - q.z()), 0.03);
+  return smooth_union(d, sphere(q, eye_centre, eye_radius), 0.03);
 }
 
 double with_nose(double d, const Vec3& q) {
@@ -136,7 +136,7 @@ double with_nose(double d, const Vec3& q) {
   d = smooth_union(d, ellipsoid(q, Vec3(0, -0.385, 1.035), Vec3(0.068, 0.066, 0.085)), 0.06);
   d = smooth_union(d, ellipsoid(q, Vec3(0.108, -0.42, 0.925), Vec3(0.056, 0.056, 0.085)), 0.06);
   d = smooth_union(d, round_cone(q, {Vec3(0, -0.435, 1.03), 0.028}, {Vec3(0, -0.5, 0.9), 0.045}), 0.05);
-  d = smooth_difference(d, ellipsoid(q, Vec3(0.062, -0.487, 0.985), Vec3(0.027, 0.042, 0.052)), 0.025);
+  d = smooth_difference(d, ellipsoid(q, Vec3(0.062, -0.494, 0.985), Vec3(0.028, 0.03, 0.05)), 0.035);
   // The fold behind the wing.
   static const auto fold =
       smooth_curve({Knot{Vec3(0.15, -0.34, 0.93), 0.008}, Knot{Vec3(0.182, -0.42, 0.90), 0.012},
@@ -154,13 +154,13 @@ double with_mouth(double d, const Vec3& q) {
                     Knot{Vec3(0.16, -0.737, 0.862), 0.040}, Knot{Vec3(0.24, -0.708, 0.795), 0.012}});
   static const auto line =
       smooth_curve({Knot{Vec3(0, -0.702, 0.985), 0.013}, Knot{Vec3(0.055, -0.694, 0.980), 0.013},
-                    Knot{Vec3(0.125, -0.699, 0.945), 0.013}, Knot{Vec3(0.20, -0.704, 0.878), 0.012},
-                    Knot{Vec3(0.262, -0.702, 0.822), 0.007}});
+                    Knot{Vec3(0.125, -0.699, 0.945), 0.013}, Knot{Vec3(0.20, -0.704, 0.884), 0.012},
+                    Knot{Vec3(0.258, -0.702, 0.832), 0.010}});
   d = smooth_difference(d, round_cone(q, {Vec3(0, -0.52, 0.985), 0.018}, {Vec3(0, -0.585, 0.99), 0.026}),
                         0.06);
   d = smooth_union(d, tube(q, upper), 0.032);
   d = smooth_union(d, tube(q, lower), 0.032);
-  return smooth_difference(d, tube(q, line), 0.03);
+  return smooth_difference(d, tube(q, line), 0.04);
 }
 
 double with_ear(double d, const Vec3& q) {
