@@ -68,10 +68,10 @@ TEST(ResolvePlace, FindsPositionsNearTheSurface) {
   expect_at(f.resolve(PositionPlace{{0.3, 0.4, 0.5}, 0.6}), {0.3, 0.4, 0});
   const Error far = f.error(PositionPlace{{0.3, 0.4, 0.5}, {}});
   EXPECT_EQ(far.code, ErrorCode::feature_too_far);
-  EXPECT_EQ(far.message,
-            "decal 'crest', feature 3: position (0.3, 0.4, 0.5) is 0.5 from the surface, more than 2 % of "
-            "the model's "
-            "diagonal, 0.04472; the nearest point is (0.3, 0.4, 0)");
+  EXPECT_EQ(
+      far.message,
+      "decal 'crest', feature 3: position (0.3, 0.4, 0.5) is 0.5 from the surface, more than the default "
+      "max_distance, 2 % of the model's diagonal, 0.04472; the nearest point is (0.3, 0.4, 0)");
   EXPECT_NE(f.error(PositionPlace{{0.3, 0.4, 0.5}, 0.25}).message.find("more than its max_distance of 0.25"),
             std::string::npos);
 }
