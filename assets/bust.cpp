@@ -326,8 +326,8 @@ std::vector<Landmark> bust_landmarks() {
           facing("right_mouth_corner", -0.265, -0.703),
           facing("mouth_middle", 0, -0.695),
           facing("chin", 0, -1.0),
-          on_chest("emblem_top", 0.66, 1.84),
-          on_chest("emblem_bottom", 0.60, 1.12)};
+          on_chest("emblem_top", 0.66, 1.86),
+          on_chest("emblem_bottom", 0.60, 1.10)};
 }
 
 int bust_chart(const Vec3& centre, const Vec3& normal) {
@@ -353,14 +353,15 @@ int bust_chart(const Vec3& centre, const Vec3& normal) {
 double bust_chart_density(int chart) {
   switch (chart) {
     case face:
-      return 1.9;
-    case left_temple:
-    case right_temple:
+      return 1.78;
     case chest:
     case left_shoulder:
-      return 1.3;
+      return 1.75;
+    case left_temple:
+    case right_temple:
+      return 1.15;
     default:
-      return 1;
+      return 0.88;
   }
 }
 

@@ -25,7 +25,7 @@ std::vector<Landmark> bust_landmarks();
 /// shoulder.
 int bust_chart(const Vec3& centre, const Vec3& normal);
 
-/// Texels a unit of length that a chart gets, relative to the back of the bust: most in the face.
+/// Texels a unit of length that a chart gets, relative to the others: most in the face.
 double bust_chart_density(int chart);
 
 /// A point given in the head's own frame (origin between the ears at eye level, face towards +z), in the

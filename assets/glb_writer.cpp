@@ -1,6 +1,7 @@
 #include "glb_writer.h"
 
 #include <algorithm>
+#include <array>
 #include <cstring>
 #include <fstream>
 
@@ -53,17 +54,20 @@ void append_chunk(std::vector<std::uint8_t>& out, std::uint32_t type, std::span<
 
 Result<void> write_glb(const std::filesystem::path& path, const Mesh& mesh, const Image& texture,
                        const GlbOptions& options) {
-  std::vector<Eigen::Vector3f> positions;
-  std::vector<Eigen::Vector3f> normals;
-  std::vector<Eigen::Vector2f> uvs;
+  std::vector<std::array<float, 3>> positions;
+  std::vector<std::array<float, 3>> normals;
+  std::vector<std::array<float, 2>> uvs;
   Eigen::Vector3f low = Eigen::Vector3f::Constant(std::numeric_limits<float>::max());
   Eigen::Vector3f high = -low;
   for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
-    positions.emplace_back(mesh.positions[v].cast<float>());
-    normals.emplace_back(mesh.normals[v].normalized().cast<float>());
-    uvs.emplace_back(mesh.uvs[v].cast<float>());
-    low = low.cwiseMin(positions.back());
-    high = high.cwiseMax(positions.back());
+    const Eigen::Vector3f p = mesh.positions[v].cast<float>();
+    const Eigen::Vector3f n = mesh.normals[v].normalized().cast<float>();
+    const Eigen::Vector2f uv = mesh.uvs[v].cast<float>();
+    positions.push_back({p.x(), p.y(), p.z()});
+    normals.push_back({n.x(), n.y(), n.z()});
+    uvs.push_back({uv.x(), uv.y()});
+    low = low.cwiseMin(p);
+    high = high.cwiseMax(p);
   }
   APPLIQUE_TRY(const std::vector<std::uint8_t> png, encode_png(texture));
 

@@ -161,7 +161,9 @@ double openness(const DistanceField& field, const Vec3& p, const Vec3& normal, d
 
 Mesh polygonise(const DistanceField& field, const PolygoniseOptions& options) {
   const BentGrid grid(options);
-  const auto [nx, ny, nz] = grid.size;
+  const int nx = grid.size[0];
+  const int ny = grid.size[1];
+  const int nz = grid.size[2];
   std::vector<Vec3> points(static_cast<std::size_t>(nx) * ny * nz);
   std::vector<double> values(points.size());
   parallel_for(nz, [&](int z) {
