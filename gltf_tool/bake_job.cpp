@@ -30,6 +30,7 @@ std::string material_name(const Document& document, std::size_t material) {
 Result<std::vector<TargetWork>> prepare(const SolvedJob& job, const Document& document,
                                         std::vector<BakeTarget> targets) {
   std::vector<std::future<Result<Image>>> textures;
+  textures.reserve(targets.size());
   for (const BakeTarget& target : targets)
     textures.push_back(
         std::async(std::launch::async, [&job, &target] { return initial_texture(job, target); }));
@@ -137,6 +138,7 @@ Result<void> transfer_all(SolvedJob& job, std::vector<TargetWork>& works, GpuBak
 
 Result<void> store_textures(const std::vector<TargetWork>& works, Document& document) {
   std::vector<std::future<Result<std::vector<std::uint8_t>>>> encoded;
+  encoded.reserve(works.size());
   for (const TargetWork& work : works)
     encoded.push_back(std::async(std::launch::async, [&work] { return encode_png(work.texture); }));
   for (std::size_t i = 0; i < works.size(); ++i) {
