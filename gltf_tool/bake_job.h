@@ -24,7 +24,7 @@ struct GpuBaker {
 Result<std::unique_ptr<GpuBaker>> create_baker(const std::string& device_selector);
 
 /// A model with its decals, not yet saved, and what the report says about it.
-struct BakedJob {
+struct BakedJob {  // NOLINT(bugprone-exception-escape): so is Document
   Document document;
   std::vector<TextureReport> textures;
   std::vector<std::optional<TexelDensity>> densities;  ///< By decal; none for overlays.
