@@ -146,3 +146,192 @@ TEST(Decal, FeaturesAreExactOnABump) {
     ASSERT_TRUE(map.has_value()) << map.error().message;
     EXPECT_EQ(map->quality.flipped_image, 0u);
     for (double residual : map->quality.feature_residual) EXPECT_LT(residual, 1e-8);
+  }
+}
+
+/// The image of surface points under a map, found by position: comparable between numberings.
+std::vector<Vec2> sample_map(const SurfaceMesh& surface, const DecalMap& map,
+                             const std::vector<Vec3>& places) {
+  std::vector<Vec2> samples;
+  for (const Vec3& place : places) {
+    const SurfacePoint point = shapes::nearest(surface, place);
+    Vec2 image = 100;
+    for (const PatchFace& face : map.patch.faces) {
+      if (face.mesh_face != point.face) continue;
+      Vec2 plane = 0;
+      for (int k = 0; k < 3; ++k) plane += point.barycentric[k] * map.plane[face.vertices[k]];
+      image = map.warp(plane);
+    }
+    samples.push_back(image);
+  }
+  return samples;
+}
+
+std::vector<Vec3> bump_places() {
+  std::vector<Vec3> places;
+  for (double x : {-0.4, -0.13, 0.07, 0.33})
+    for (double y : {-0.31, -0.02, 0.21, 0.41})
+      places.emplace_back(x, y, 0.6 * std::exp(-(x * x + y * y) / 0.1225));
+  return places;
+}
+
+double largest_difference(const std::vector<Vec2>& a, const std::vector<Vec2>& b) {
+  double worst = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) worst = std::max(worst, std::abs(a[i] - b[i]));
+  return worst * frame.pixels_per_unit();
+}
+
+TEST(Decal, DoesNotDependOnTheOrderOfTrianglesVerticesOrFeatures) {
+  const shapes::Soup soup = shapes::bump(64, 0.6, 0.35);
+  const SurfaceMesh surface = soup.weld();
+  const auto map = solve_decal(surface, decal(surface, rectangle(), bent_pins()));
+  ASSERT_TRUE(map.has_value()) << map.error().message;
+  const std::vector<Vec2> expected = sample_map(surface, *map, bump_places());
+  std::mt19937 random(2);
+  for (int run = 0; run < 5; ++run) {
+    std::vector<std::uint32_t> order(soup.positions.size());
+    std::iota(order.begin(), order.end(), 0u);
+    std::shuffle(order.begin(), order.end(), random);
+    shapes::Soup shuffled;
+    shuffled.positions.resize(order.size());
+    for (std::size_t v = 0; v < order.size(); ++v) shuffled.positions[order[v]] = soup.positions[v];
+    for (const auto& t : soup.triangles) {
+      const auto turn = static_cast<unsigned>(random() % 3);
+      shuffled.triangles.push_back({order[t[turn]], order[t[(turn + 1) % 3]], order[t[(turn + 2) % 3]]});
+    }
+    std::shuffle(shuffled.triangles.begin(), shuffled.triangles.end(), random);
+    std::vector<Pin> pins = bent_pins();
+    std::shuffle(pins.begin(), pins.end(), random);
+    const SurfaceMesh other = shuffled.weld();
+    const auto again = solve_decal(other, decal(other, rectangle(), pins));
+    ASSERT_TRUE(again.has_value()) << again.error().message;
+    EXPECT_EQ(again->patch.faces.size(), map->patch.faces.size());
+    EXPECT_LT(largest_difference(sample_map(other, *again, bump_places()), expected), 0.05);
+  }
+}
+
+TEST(Decal, DoesNotDependOnARigidMotionOrScalingOfTheModel) {
+  const shapes::Soup soup = shapes::bump(64, 0.6, 0.35);
+  const SurfaceMesh surface = soup.weld();
+  const auto map = solve_decal(surface, decal(surface, rectangle(), bent_pins()));
+  ASSERT_TRUE(map.has_value());
+  const std::vector<Vec2> expected = sample_map(surface, *map, bump_places());
+  for (const double scale : {1e-3, 1.0, 250.0}) {
+    const Eigen::AngleAxisd turn(1.1, Vec3(1, -2, 0.5).normalized());
+    const auto move = [&](const Vec3& p) -> Vec3 { return scale * (turn * p + Vec3(3, -1, 2)); };
+    shapes::Soup moved = soup;
+    for (Vec3& p : moved.positions) p = move(p);
+    std::vector<Pin> pins = bent_pins();
+    for (Pin& pin : pins) pin.position = move(position_of(surface, shapes::nearest(surface, pin.position)));
+    std::vector<Vec3> places;
+    for (const Vec3& p : bump_places())
+      places.push_back(move(position_of(surface, shapes::nearest(surface, p))));
+    const SurfaceMesh other = moved.weld();
+    const auto again = solve_decal(other, decal(other, rectangle(), pins));
+    ASSERT_TRUE(again.has_value());
+    EXPECT_LT(largest_difference(sample_map(other, *again, places), expected), 0.05);
+  }
+}
+
+TEST(Decal, BridgesASmallHole) {
+  shapes::Soup soup = shapes::plane(40, 40, 4, 4);
+  std::erase_if(soup.triangles, [&](const auto& t) {
+    const Vec3 centre = (soup.positions[t[0]] + soup.positions[t[1]] + soup.positions[t[2]]) / 3;
+    return (centre - Vec3(2, 2, 0)).cwiseAbs().maxCoeff() < 0.15;
+  });
+  const SurfaceMesh surface = soup.weld();
+  const auto at = [](Pixel px) {
+    const Vec2 z = frame.to_plane(px);
+    return Vec3(z.real() + 2, z.imag() + 2, 0);
+  };
+  std::vector<Pin> pins;
+  for (Pixel px : {Pixel{100, 256}, Pixel{400, 256}}) pins.push_back({px, at(px)});
+  const auto map = solve_decal(surface, decal(surface, rectangle(), pins));
+  ASSERT_TRUE(map.has_value()) << map.error().message;
+  EXPECT_EQ(map->status, Coverage::covered);
+  EXPECT_LT(map_error(surface, *map, [](const Vec3& p) { return Vec2(p.x() - 2, p.y() - 2); }), 1e-7);
+  // What is not shown is the hole: a square of (2 cells)^2 or so out of 40 x 40 quarters.
+  EXPECT_NEAR(map->quality.coverage, 1 - 0.2 * 0.2 / 4, 0.011);
+  for (PatchFaceId q : ids<PatchFaceId>(map->patch.faces.size()))
+    if (!map->patch.faces[q].mesh_face.valid()) {
+      EXPECT_FALSE(map->textured[q]);
+    }
+}
+
+TEST(Decal, EndsAtTheBoundaryOfTheSurface) {
+  const SurfaceMesh surface = shapes::plane(20, 20, 2, 2).weld();
+  const auto map = solve_decal(
+      surface, decal(surface, rectangle(), {{{100, 256}, {0.1, 1, 0}}, {{356, 256}, {1.1, 1, 0}}}));
+  ASSERT_TRUE(map.has_value()) << map.error().message;
+  EXPECT_EQ(map->status, Coverage::clipped_by_boundary);
+  EXPECT_LT(map->quality.coverage, 0.95);
+  ASSERT_EQ(map->warnings.size(), 1u);
+  EXPECT_EQ(map->warnings[0].code, "clipped_by_boundary");
+}
+
+TEST(Decal, GoesRoundAClosedSurfaceOnlyOnce) {
+  const SurfaceMesh surface = shapes::sphere(4, 1).weld();
+  // The image is far larger than the sphere.
+  const auto map = solve_decal(
+      surface, decal(surface, rectangle(), {{{246, 256}, {-0.2, 0, 0.98}}, {{266, 256}, {0.2, 0, 0.98}}}));
+  ASSERT_TRUE(map.has_value()) << map.error().message;
+  EXPECT_NE(map->status, Coverage::covered);
+  EXPECT_NE(map->status, Coverage::not_converged);
+  EXPECT_LE(map->patch.faces.size(), surface.faces.size());
+}
+
+TEST(Decal, CostDoesNotFollowTheSurface) {
+  // The same small decal on a plane and on one with 16 times the area: the patch is the same.
+  std::size_t faces = 0;
+  for (const int cells : {40, 160}) {
+    const double size = cells / 10.0;
+    const SurfaceMesh surface = shapes::plane(cells, cells, size, size).weld();
+    const auto map =
+        solve_decal(surface, decal(surface, star(), {{{200, 256}, {1.8, 2, 0}}, {{312, 256}, {2.2, 2, 0}}}));
+    ASSERT_TRUE(map.has_value());
+    if (faces == 0) faces = map->patch.faces.size();
+    EXPECT_EQ(map->patch.faces.size(), faces);
+  }
+}
+
+void expect_error(const SurfaceMesh& surface, const DecalInput& input, ErrorCode code,
+                  const std::string& part) {
+  const auto map = solve_decal(surface, input);
+  ASSERT_FALSE(map.has_value());
+  EXPECT_EQ(map.error().code, code);
+  EXPECT_NE(map.error().message.find(part), std::string::npos) << map.error().message;
+  EXPECT_NE(map.error().message.find("decal 'test'"), std::string::npos);
+}
+
+TEST(DecalErrors, NameTheCulprit) {
+  const SurfaceMesh surface = shapes::plane(20, 20, 4, 4).weld();
+  expect_error(surface, decal(surface, star(), {{{256, 256}, {2, 2, 0}}, {{20, 40}, {1, 3, 0}}}),
+               ErrorCode::feature_outside_region, "feature 1 at (20.0, 40.0): outside the contour by");
+  expect_error(surface, decal(surface, star(), {{{256, 256}, {2, 2, 0}}, {{256, 256}, {1, 3, 0}}}),
+               ErrorCode::features_coincide, "one spot of the image");
+  expect_error(surface, decal(surface, star(), {{{256, 256}, {2, 2, 0}}, {{200, 256}, {2, 2, 0}}}),
+               ErrorCode::features_coincide, "feature 0 at (256.0, 256.0) and feature 1 at (200.0, 256.0)");
+  expect_error(surface, decal(surface, star(), {{{256, 256}, {2, 2, 0}}}), ErrorCode::size_missing,
+               "\"size\"");
+  expect_error(surface,
+               decal(surface, rectangle(),
+                     {{{156, 156}, {2.5, 2.5, 0}}, {{356, 156}, {1.5, 2.5, 0}}, {{256, 356}, {2, 1.5, 0}}}),
+               ErrorCode::features_mirrored, "mirror");
+  DecalInput lone = decal(surface, star(), {{{256, 256}, {2, 2, 0}}});
+  lone.lone = LoneFrame{1, {0, 0, 1}};
+  expect_error(surface, lone, ErrorCode::size_missing, "along the surface's normal");
+}
+
+TEST(DecalErrors, NameTheFeaturesOnDisconnectedParts) {
+  shapes::Soup two = shapes::plane(4, 4, 1, 1);
+  const shapes::Soup other = shapes::plane(4, 4, 1, 1);
+  for (const auto& t : other.triangles) two.triangles.push_back({t[0] + 25, t[1] + 25, t[2] + 25});
+  for (const Vec3& p : other.positions) two.positions.push_back(p + Vec3(3, 0, 0));
+  const SurfaceMesh surface = two.weld();
+  expect_error(
+      surface, decal(surface, rectangle(), {{{100, 256}, {0.5, 0.5, 0}}, {{300, 256}, {3.5, 0.5, 0}}}),
+      ErrorCode::features_disconnected, "feature 0 at (100.0, 256.0) from feature 1 at (300.0, 256.0)");
+}
+
+}  // namespace
+}  // namespace applique

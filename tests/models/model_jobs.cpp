@@ -1,0 +1,102 @@
+#include "models/model_jobs.h"
+
+#include <cmath>
+#include <fstream>
+
+#include <nlohmann/json.hpp>
+
+namespace applique {
+namespace {
+
+using nlohmann::json;
+
+json pick(double x, double y, double px, double py, double pz) {
+  return {{"image", {x, y}}, {"position", {px, py, pz}}};
+}
+
+json ray(double x, double y, const std::array<double, 3>& origin, const std::array<double, 3>& direction) {
+  return {{"image", {x, y}}, {"ray", {{"origin", origin}, {"direction", direction}}}};
+}
+
+/// The tiger's eyes and nose on those of the scanned head.
+json tiger_features() {
+  return {pick(502, 635, -0.706728, 1.72963, 1.96093), pick(953, 629, 0.582272, 1.72963, 1.93953),
+          pick(720, 1089, -0.1289, 1.0629, 2.57438)};
+}
+
+/// The face paint on the landmarks it was drawn for.
+json face_paint_features() {
+  return {
+      pick(286.8, 384.6, -4.445859, 2.663991, 3.173422), pick(429.1, 396.4, -1.856432, 2.585245, 3.757904),
+      pick(594.9, 396.5, 1.856432, 2.585245, 3.757904),  pick(737.2, 384.6, 4.445859, 2.663991, 3.173422),
+      pick(512.0, 560.6, 0, -1.126865, 7.475604),        pick(391.1, 711.4, -2.456206, -4.342621, 4.283884),
+      pick(632.9, 711.4, 2.456206, -4.342621, 4.283884), pick(512.0, 977.4, 0, -9.403378, 4.264492),
+      pick(512.0, 109.6, 0, 8.261778, 4.481535)};
+}
+
+/// A label round the bottle's back, where its UV seam is. The bottle's radius there is 0.05.
+json bottle_features() {
+  json features;
+  const double scale = 0.055 / 594;
+  for (const auto& [x, y] :
+       {std::pair(150, 150), std::pair(350, 150), std::pair(250, 300), std::pair(250, 450)}) {
+    const double angle = (x - 250) * scale / 0.05, height = 0.012 + (297 - y) * scale;
+    features.push_back(ray(x, y, {-0.2 * std::sin(angle), height, -0.2 * std::cos(angle)},
+                           {std::sin(angle), 0, std::cos(angle)}));
+  }
+  return features;
+}
+
+/// A heart on the cow's flank, seen from +x.
+json flank_features() {
+  json features;
+  for (const auto& [x, y] : {std::pair(40, 45), std::pair(96, 45), std::pair(68, 105)})
+    features.push_back(ray(x, y, {2, 0.1 - (y - 64) * 0.003, 0.1 - (x - 68) * 0.003}, {-1, 0, 0}));
+  return features;
+}
+
+/// A star on the forehead, seen from +z.
+json forehead_features() {
+  json features;
+  for (const auto& [x, y] : {std::pair(68, 30), std::pair(48, 75), std::pair(89, 75)})
+    features.push_back(ray(x, y, {(x - 68) * 0.004, 0.6 - (y - 64) * 0.004, 3}, {0, 0, -1}));
+  return features;
+}
+
+/// A star on the helmet's leather, seen from +x.
+json helmet_features() {
+  json features;
+  for (const auto& [x, y] : {std::pair(68, 30), std::pair(48, 75), std::pair(89, 75)})
+    features.push_back(ray(x, y, {1, 0.63 - (y - 64) * 0.0006, -0.02 - (x - 68) * 0.0006}, {-1, 0, 0}));
+  return features;
+}
+
+}  // namespace
+
+std::vector<ModelJob> write_model_jobs(const std::filesystem::path& data,
+                                       const std::filesystem::path& folder) {
+  std::vector<ModelJob> jobs;
+  const auto add = [&](const std::string& name, const std::string& model, const std::string& image,
+                       json features, json decal = json::object(), bool surface_ends = false) {
+    if (!std::filesystem::exists(data / model) || !std::filesystem::exists(data / image)) return;
+    decal["name"] = name;
+    decal["image"] = (data / image).string();
+    decal["features"] = std::move(features);
+    const json job = {{"version", 1}, {"model", (data / model).string()}, {"decals", {decal}}};
+    jobs.push_back({name, folder / (name + ".json"), surface_ends});
+    std::ofstream(jobs.back().file) << job.dump(1);
+  };
+  add("tiger", "gltf/LeePerrySmith/LeePerrySmith.glb", "images/openclipart/tiger_graig_ryan_smith_-_01.png",
+      tiger_features());
+  add("face-paint", "derived/gltf/canonical_face_model.glb", "images/mediapipe/facepaint.png",
+      face_paint_features(), {{"region", {{"alpha", 0.02}}}}, true);
+  add("bottle-label", "gltf/WaterBottle/WaterBottle.gltf",
+      "images/openclipart/coat_of_arms_of_anglica_01.png", bottle_features());
+  add("cow-heart", "derived/gltf/spot.glb", "images/noto/noto_u2764.png", flank_features());
+  add("monkey-star", "gltf/Suzanne/Suzanne.gltf", "images/noto/noto_u2b50.png", forehead_features());
+  add("helmet-star", "gltf/FlightHelmet/FlightHelmet.gltf", "images/noto/noto_u2b50.png", helmet_features(),
+      {{"materials", {"LeatherPartsMat"}}});
+  return jobs;
+}
+
+}  // namespace applique

@@ -1,0 +1,158 @@
+// The whole of it on third-party models: solved, exact, covered, the GPU in step with its twin, the output
+// valid.
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include "applique/gpu/gpu_transfer.h"
+
+#include "bake_job.h"
+#include "bake_plan.h"
+#include "edit.h"
+#include "gltf/validator.h"
+#include "gpu/gpu_fixture.h"
+#include "job.h"
+#include "models/model_jobs.h"
+#include "save_document.h"
+#include "solve_job.h"
+
+namespace applique {
+namespace {
+
+class RealModels : public GpuTest {
+ protected:
+  void SetUp() override {
+    if (std::string(APPLIQUE_TEST_DATA).empty())
+      GTEST_SKIP() << "APPLIQUE_TEST_DATA does not name the folder of third-party models";
+    GpuTest::SetUp();
+    if (IsSkipped()) return;
+    folder_ = std::filesystem::temp_directory_path() / ("applique-models-" + std::to_string(getpid()));
+    std::filesystem::create_directories(folder_);
+    jobs_ = write_model_jobs(APPLIQUE_TEST_DATA, folder_);
+    ASSERT_FALSE(jobs_.empty());
+  }
+  void TearDown() override {
+    std::filesystem::remove_all(folder_);
+    GpuTest::TearDown();
+  }
+
+  static SolvedJob solve(const ModelJob& job) {
+    auto loaded = load_job(job.file);
+    EXPECT_TRUE(loaded) << loaded.error().message;
+    auto solved = solve_job(*loaded);
+    EXPECT_TRUE(solved) << solved.error().message;
+    return std::move(*solved);
+  }
+
+  std::filesystem::path folder_;
+  std::vector<ModelJob> jobs_;
+};
+
+TEST_F(RealModels, AreSolvedExactlyWithoutFlips) {
+  for (const ModelJob& job : jobs_) {
+    SCOPED_TRACE(job.name);
+    const SolvedJob solved = solve(job);
+    const DecalMap& map = solved.decals[0].map;
+    EXPECT_EQ(map.quality.flipped_plane, 0u);
+    EXPECT_EQ(map.quality.flipped_image, 0u);
+    for (double residual : map.quality.feature_residual) EXPECT_LT(residual, 0.01);
+    EXPECT_EQ(map.status, job.surface_ends ? Coverage::clipped_by_boundary : Coverage::covered);
+    if (!job.surface_ends) {
+      EXPECT_GT(map.quality.coverage, 0.995);
+    }
+    EXPECT_LT(map.quality.coverage, 1.001);
+    RecordProperty(job.name + ".l2", std::to_string(map.quality.l2_stretch));
+  }
+}
+
+/// The image point baked at the texel nearest to each feature is the feature's, up to that texel's size.
+void expect_features_in_texture(const SolvedJob& solved, const Transfer& transfer,
+                                const TransferResult& result) {
+  const ImageFrame& frame = transfer.image->frame;
+  for (const Feature& feature : solved.decals[0].features) {
+    double nearest = 1e9, texel_px = 0;
+    for (const TransferResult::Sample& sample : result.samples)
+      nearest =
+          std::min(nearest, std::hypot(sample.image.x - feature.image.x, sample.image.y - feature.image.y));
+    // The size of a texel in the image, from the coarsest face: an upper bound for the one at the feature.
+    for (const TransferFace& face : transfer.faces) {
+      const double texels =
+          std::abs((face.texel[1][0] - face.texel[0][0]) * (face.texel[2][1] - face.texel[0][1]) -
+                   (face.texel[2][0] - face.texel[0][0]) * (face.texel[1][1] - face.texel[0][1]));
+      const Vec2 at = frame.to_plane(feature.image);
+      const double size = std::abs(face.image[0] - at);
+      if (size > 0.1) continue;  // faces round the feature only
+      const double image = std::abs(cross(face.image[1] - face.image[0], face.image[2] - face.image[0]));
+      texel_px = std::max(texel_px, std::sqrt(image / texels) * frame.pixels_per_unit());
+    }
+    EXPECT_LT(nearest, std::max(texel_px, 1e-3));
+  }
+}
+
+TEST_F(RealModels, BakeOnTheGpuAsOnTheCpu) {
+  auto gpu = GpuTransfer::create(device());
+  ASSERT_TRUE(gpu) << gpu.error().message;
+  for (const ModelJob& job : jobs_) {
+    SCOPED_TRACE(job.name);
+    const SolvedJob solved = solve(job);
+    Document document = solved.model.document;
+    const auto targets = plan_bake(solved, document);
+    ASSERT_TRUE(targets) << targets.error().message;
+    const DecalImage image = make_decal_image(solved.decals[0].image, solved.decals[0].region);
+    for (const BakeTarget& target : *targets) {
+      auto before = initial_texture(solved, target);
+      ASSERT_TRUE(before) << before.error().message;
+      Transfer transfer = lay_out_transfer(solved, target, 0, before->width, before->height);
+      transfer.image = &image;
+      Image on_cpu = *before, on_gpu = *before;
+      const TransferResult cpu = transfer_on_cpu(transfer, on_cpu, true);
+      const auto run = gpu->run(transfer, on_gpu, true);
+      ASSERT_TRUE(run) << run.error().message;
+      ASSERT_EQ(run->samples.size(), cpu.samples.size());
+      double worst = 0;
+      for (std::size_t i = 0; i < cpu.samples.size(); ++i) {
+        ASSERT_EQ(cpu.samples[i].x, run->samples[i].x);
+        ASSERT_EQ(cpu.samples[i].y, run->samples[i].y);
+        worst = std::max(worst, std::hypot(cpu.samples[i].image.x - run->samples[i].image.x,
+                                           cpu.samples[i].image.y - run->samples[i].image.y));
+      }
+      EXPECT_LT(worst, 0.05);
+      int colour = 0;
+      for (std::size_t i = 0; i < on_cpu.rgba.size(); ++i)
+        colour = std::max(colour, std::abs(int(on_cpu.rgba[i]) - int(on_gpu.rgba[i])));
+      EXPECT_LE(colour, 257);  // one step of 8 bits
+      if (targets->size() == 1) expect_features_in_texture(solved, transfer, *run);
+    }
+  }
+}
+
+TEST_F(RealModels, TheValidatorFindsNothingNew) {
+  auto baker = create_baker("");
+  ASSERT_TRUE(baker) << baker.error().message;
+  std::vector<std::filesystem::path> files;
+  for (const ModelJob& job : jobs_) {
+    SCOPED_TRACE(job.name);
+    SolvedJob solved = solve(job);
+    const auto baked = bake_job(solved, **baker);
+    ASSERT_TRUE(baked) << baked.error().message;
+    const std::filesystem::path output = folder_ / (job.name + ".glb");
+    const auto saved = save_document(baked->document, output);
+    ASSERT_TRUE(saved) << saved.error().message;
+    files.push_back(solved.job.model);
+    files.push_back(output);
+  }
+  const auto counts = validate(files);
+  if (!counts) GTEST_SKIP() << "the Khronos validator is not installed";
+  for (std::size_t i = 0; i < jobs_.size(); ++i)
+    for (const auto& [code, count] : (*counts)[2 * i + 1]) {
+      const auto before = (*counts)[2 * i].find(code);
+      EXPECT_NE(before, (*counts)[2 * i].end()) << jobs_[i].name << ": " << code;
+    }
+}
+
+}  // namespace
+}  // namespace applique
