@@ -1,5 +1,6 @@
 #include "jobs.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -36,10 +37,10 @@ Result<void> write_job(const std::filesystem::path& path, const std::string& mod
 Result<void> write_jobs(const std::filesystem::path& folder) {
   const auto landmarks = bust_landmarks();
   const auto at = [&](const std::string& name) {
-    for (const Landmark& landmark : landmarks)
-      if (landmark.name == name) return landmark.position;
-    APPLIQUE_ASSERT(!"a landmark of that name");
-    return Vec3();
+    const auto found = std::find_if(landmarks.begin(), landmarks.end(),
+                                    [&](const Landmark& landmark) { return landmark.name == name; });
+    APPLIQUE_ASSERT(found != landmarks.end());
+    return found->position;
   };
   const auto right = [](Pixel left) { return Pixel{1024 - left.x, left.y}; };
   namespace place = mask_place;

@@ -72,8 +72,11 @@ Image preview(const Mesh& mesh, const Image* texture, const View& view, int widt
   for (int y = 0; y < height; ++y)
     for (int x = 0; x < width; ++x) {
       Vec3 sum = Vec3::Zero();
-      for (int s = 0; s < samples * samples; ++s)
-        sum += colour[static_cast<std::size_t>(samples * y + s / samples) * w + samples * x + s % samples];
+      for (int s = 0; s < samples * samples; ++s) {
+        const std::size_t row = samples * y + s / samples;
+        const std::size_t column = samples * x + s % samples;
+        sum += colour[row * w + column];
+      }
       for (int c = 0; c < 3; ++c)
         image.pixel(x, y)[c] =
             static_cast<std::uint16_t>(257 * std::lround(255 * sum[c] / (samples * samples)));
