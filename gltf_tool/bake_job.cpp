@@ -51,7 +51,9 @@ Result<std::vector<TargetWork>> prepare(const SolvedJob& job, const Document& do
 void warn_of_overlap(SolvedDecal& decal, const TargetWork& work, const TransferResult& result) {
   // Where triangles meet, rounding may give a texel to both: not worth a word.
   constexpr double smallest_share = 1e-3;
-  if (static_cast<double>(result.shared_texels) <= smallest_share * static_cast<double>(result.covered_texels)) return;
+  if (static_cast<double>(result.shared_texels) <=
+      smallest_share * static_cast<double>(result.covered_texels))
+    return;
   decal.warnings.push_back(
       {"uv_overlap",
        fmt::format("decal '{}': {} texels of '{}' are shown by other surface too, where the decal appears "
