@@ -197,7 +197,7 @@ class Solver {
   }
 
   /// Embeds, aligns and warps the disc as it is: points_ and built_.
-  Result<void> parameterize(const ImmersedDisc& disc, const Growth& growth, Energy energy) {
+  Result<void> parameterize(const ImmersedDisc& disc, const Growth& growth, const EmbedOptions& options) {
     ++map_.solves;
     std::vector<Vec2> features(targets_.size());
     std::vector<Vec2> plane;
@@ -207,7 +207,7 @@ class Solver {
       std::vector<Vec2> start;
       if (rung_ == EmbeddingRung::descended)
         for (const PatchPoint& point : points_) start.push_back(point.plane / scale_);
-      Embedding embedding = embed_disc(measure_disc(disc), {energy}, start);
+      Embedding embedding = embed_disc(measure_disc(disc), options, start);
       rung_ = embedding.rung;
       plane = std::move(embedding.plane);
       for (std::size_t k = 0; k < features.size(); ++k)
@@ -273,7 +273,7 @@ class Solver {
     Energy energy = Energy::conformal;
     bool padded = false;
     while (true) {
-      APPLIQUE_CHECK(parameterize(disc, growth, energy));
+      APPLIQUE_CHECK(parameterize(disc, growth, {energy, !padded}));
       StageTimer stage(map_.times.grow);
       if (map_.solves >= options_.max_solves) break;
       auto inside = growth.inside(points_);
@@ -285,7 +285,8 @@ class Solver {
           energy = options_.energy;
           continue;
         }
-        if (padded || growth.pad(points_) == 0) break;
+        if (padded) break;
+        growth.pad(points_);
         padded = true;
       }
       growth.compact(points_);

@@ -30,8 +30,7 @@ json face_paint_features() {
       pick(286.8, 384.6, -4.445859, 2.663991, 3.173422), pick(429.1, 396.4, -1.856432, 2.585245, 3.757904),
       pick(594.9, 396.5, 1.856432, 2.585245, 3.757904),  pick(737.2, 384.6, 4.445859, 2.663991, 3.173422),
       pick(512.0, 560.6, 0, -1.126865, 7.475604),        pick(391.1, 711.4, -2.456206, -4.342621, 4.283884),
-      pick(632.9, 711.4, 2.456206, -4.342621, 4.283884), pick(512.0, 977.4, 0, -9.403378, 4.264492),
-      pick(512.0, 109.6, 0, 8.261778, 4.481535)};
+      pick(632.9, 711.4, 2.456206, -4.342621, 4.283884)};
 }
 
 /// A label round the bottle's back, where its UV seam is. The bottle's radius there is 0.05.
@@ -89,7 +88,7 @@ std::vector<ModelJob> write_model_jobs(const std::filesystem::path& data,
   add("tiger", "gltf/LeePerrySmith/LeePerrySmith.glb", "images/openclipart/tiger_graig_ryan_smith_-_01.png",
       tiger_features());
   add("face-paint", "derived/gltf/canonical_face_model.glb", "images/mediapipe/facepaint.png",
-      face_paint_features(), {{"region", {{"alpha", 0.02}}}}, true);
+      face_paint_features(), {{"region", {{"alpha", 0.02}}}});
   add("bottle-label", "gltf/WaterBottle/WaterBottle.gltf",
       "images/openclipart/coat_of_arms_of_anglica_01.png", bottle_features());
   add("cow-heart", "derived/gltf/spot.glb", "images/noto/noto_u2764.png", flank_features());

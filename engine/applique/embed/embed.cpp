@@ -25,6 +25,8 @@ void scale_to_area(const DiscGeometry& disc, std::vector<Vec2>& plane) {
   for (Vec2& z : plane) z *= scale;
 }
 
+constexpr ArapOptions rough_arap{10, 1e-2};
+
 Embedding descend(const DiscGeometry& disc, std::vector<Vec2> start) {
   Embedding embedding{relax_symmetric_dirichlet(disc, std::move(start)), EmbeddingRung::descended, 0};
   embedding.flips = count_flips(disc, embedding.plane);
@@ -34,7 +36,8 @@ Embedding descend(const DiscGeometry& disc, std::vector<Vec2> start) {
 }  // namespace
 
 Embedding embed_disc(const DiscGeometry& disc, const EmbedOptions& options, const std::vector<Vec2>& start) {
-  if (options.energy == Energy::isometric && !start.empty() && count_flips(disc, start) == 0)
+  if (options.energy == Energy::isometric && !options.rough && !start.empty() &&
+      count_flips(disc, start) == 0)
     return descend(disc, start);
   Embedding embedding{flatten_boundary_first(disc), EmbeddingRung::conformal, 0};
   if (!finite(embedding.plane) || (embedding.flips = count_flips(disc, embedding.plane)) > 0) {
@@ -46,10 +49,11 @@ Embedding embed_disc(const DiscGeometry& disc, const EmbedOptions& options, cons
   scale_to_area(disc, embedding.plane);
   if (options.energy == Energy::conformal) return embedding;
 
-  std::vector<Vec2> relaxed = relax_arap(disc, embedding.plane, {options.max_iterations, options.tolerance});
+  std::vector<Vec2> relaxed = relax_arap(disc, embedding.plane, options.rough ? rough_arap : ArapOptions{});
   if (finite(relaxed)) {
     const std::size_t flips = count_flips(disc, relaxed);
-    if (flips == 0 || embedding.flips > 0) return {std::move(relaxed), EmbeddingRung::isometric, flips};
+    if (flips == 0 || embedding.flips > 0 || options.rough)
+      return {std::move(relaxed), EmbeddingRung::isometric, flips};
   }
   // A blend that stops before ARAP's first fold starts the descent next to its barrier, which costs more
   // steps than the flip-free map itself does.

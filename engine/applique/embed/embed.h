@@ -26,8 +26,7 @@ struct Embedding {
 
 struct EmbedOptions {
   Energy energy = Energy::isometric;
-  int max_iterations = 30;  ///< Of ARAP.
-  double tolerance = 1e-4;  ///< Of ARAP, share of the mean edge length.
+  bool rough = false;  ///< The disc is going to change: local folds are left as they are.
 };
 
 /// Embeds the disc in the plane with a free boundary (§5.1 of the paper; §4.2 and §4.3 of the design):

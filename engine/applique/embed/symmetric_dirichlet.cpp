@@ -176,6 +176,7 @@ std::vector<Vec2> relax_symmetric_dirichlet(const DiscGeometry& disc, std::vecto
                                             const SymmetricDirichletOptions& options) {
   constexpr double sufficient = 1e-4;  // Armijo
   constexpr int most_halvings = 12;
+  constexpr double most_steps = 8;  // Newton steps that one line search may go
   const std::vector<RestTriangle> rest = rest_triangles(disc);
   double value = energy(disc, rest, plane);
   if (!std::isfinite(value)) return plane;
@@ -184,14 +185,23 @@ std::vector<Vec2> relax_symmetric_dirichlet(const DiscGeometry& disc, std::vecto
   for (int iteration = 0; iteration < options.max_iterations; ++iteration) {
     if (!system.step(rest, plane, direction)) break;
     const double slope = system.gradient().dot(direction);
-    double t = std::min(1.0, 0.9 * first_collapse(disc, plane, moved(plane, direction, 1)));
+    const double longest =
+        0.9 * first_collapse(disc, plane, moved(plane, direction, most_steps)) * most_steps;
     const double before = value;
+    double t = std::min(1.0, longest);
     for (int halving = 0; halving < most_halvings; ++halving, t *= 0.5) {
-      std::vector<Vec2> candidate = moved(plane, direction, t);
-      const double reached = energy(disc, rest, candidate);
+      const double reached = energy(disc, rest, moved(plane, direction, t));
       if (reached > value + sufficient * t * slope) continue;
-      plane = std::move(candidate);
       value = reached;
+      // Near a collapse the energy is of inverse squares, on which a Newton step goes a third of the way
+      // only.
+      while (2 * t <= longest) {
+        const double further = energy(disc, rest, moved(plane, direction, 2 * t));
+        if (further >= value) break;
+        value = further;
+        t *= 2;
+      }
+      plane = moved(plane, direction, t);
       break;
     }
     if (before - value <= options.tolerance * value) break;
