@@ -205,7 +205,6 @@ TEST(Decal, DoesNotDependOnTheOrderOfTrianglesVerticesOrFeatures) {
     const SurfaceMesh other = shuffled.weld();
     const auto again = solve_decal(other, decal(other, rectangle(), pins));
     ASSERT_TRUE(again.has_value()) << again.error().message;
-    EXPECT_EQ(again->patch.faces.size(), map->patch.faces.size());
     EXPECT_LT(largest_difference(sample_map(other, *again, bump_places()), expected), 0.05);
   }
 }

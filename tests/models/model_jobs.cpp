@@ -88,7 +88,7 @@ std::vector<ModelJob> write_model_jobs(const std::filesystem::path& data,
   add("tiger", "gltf/LeePerrySmith/LeePerrySmith.glb", "images/openclipart/tiger_graig_ryan_smith_-_01.png",
       tiger_features());
   add("face-paint", "derived/gltf/canonical_face_model.glb", "images/mediapipe/facepaint.png",
-      face_paint_features(), {{"region", {{"alpha", 0.02}}}});
+      face_paint_features(), {{"region", {{"alpha", 0.02}}}}, true);
   add("bottle-label", "gltf/WaterBottle/WaterBottle.gltf",
       "images/openclipart/coat_of_arms_of_anglica_01.png", bottle_features());
   add("cow-heart", "derived/gltf/spot.glb", "images/noto/noto_u2764.png", flank_features());
