@@ -150,6 +150,9 @@ struct Device::State {
   VkPipelineCache pipeline_cache = VK_NULL_HANDLE;
   std::size_t stored_cache_size = 0;
   VkDebugUtilsMessengerEXT messenger = VK_NULL_HANDLE;
+  // This instance's own: volk's globals are those of the instance made last, which may lack the extension.
+  PFN_vkDestroyDebugUtilsMessengerEXT destroy_messenger = nullptr;
+  PFN_vkSetDebugUtilsObjectNameEXT set_object_name = nullptr;
   bool debug_utils = false;
   MessageLog log;
 
@@ -171,7 +174,7 @@ Device::State::~State() {
     functions.vkDestroyCommandPool(handles.device, command_pool, nullptr);
     functions.vkDestroyDevice(handles.device, nullptr);
   }
-  if (messenger != VK_NULL_HANDLE) vkDestroyDebugUtilsMessengerEXT(handles.instance, messenger, nullptr);
+  if (messenger != VK_NULL_HANDLE) destroy_messenger(handles.instance, messenger, nullptr);
   if (handles.instance != VK_NULL_HANDLE) vkDestroyInstance(handles.instance, nullptr);
 }
 
@@ -203,7 +206,11 @@ Result<void> Device::State::create_instance(bool validation) {
                             static_cast<int>(result)));
   }
   volkLoadInstanceOnly(handles.instance);
-  if (validation) vkCreateDebugUtilsMessengerEXT(handles.instance, &messages, nullptr, &messenger);
+  if (validation) {
+    vkCreateDebugUtilsMessengerEXT(handles.instance, &messages, nullptr, &messenger);
+    destroy_messenger = vkDestroyDebugUtilsMessengerEXT;
+    set_object_name = vkSetDebugUtilsObjectNameEXT;
+  }
   return {};
 }
 
@@ -351,7 +358,7 @@ void Device::set_name(VkObjectType type, std::uint64_t handle, const std::string
   info.objectType = type;
   info.objectHandle = handle;
   info.pObjectName = name.c_str();
-  vkSetDebugUtilsObjectNameEXT(state_->handles.device, &info);
+  state_->set_object_name(state_->handles.device, &info);
 }
 
 tl::unexpected<Error> device_failure(const char* call, VkResult result) {
