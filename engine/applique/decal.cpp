@@ -17,6 +17,7 @@ namespace {
 
 constexpr std::uint32_t cover_limit = 1;      // one sheet
 constexpr double linear_tolerance_px = 0.02;  // §5.1 of the design
+constexpr double on_contour = 1e-9;           // plane units
 constexpr double coincident = 1e-6;           // of the region's diameter
 
 /// Adds the time until its end to a counter, in seconds.
@@ -54,7 +55,8 @@ Result<void> check_input(const SurfaceMesh& surface, const DecalInput& input,
                 prefix + "has no features; pin at least one point of the image");
   const double pixels = input.region.frame().pixels_per_unit();
   for (std::size_t k = 0; k < input.features.size(); ++k) {
-    if (!input.region.contains(targets[k]))
+    // A feature on a slanted edge of the contour may lie outside by rounding.
+    if (!input.region.contains(targets[k]) && input.region.signed_distance(targets[k]) < -on_contour)
       return fail(
           ErrorCode::feature_outside_region,
           fmt::format("{}{}: outside the contour by {:.1f} px; move it inside or widen the region", prefix,

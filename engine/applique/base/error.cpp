@@ -39,7 +39,7 @@ constexpr CodeEntry code_table[] = {
 const CodeEntry& entry_of(ErrorCode code) {
   for (const CodeEntry& entry : code_table)
     if (entry.code == code) return entry;
-  APPLIQUE_ASSERT(!"every error code has an entry");
+  APPLIQUE_ASSERT(false && "every error code has an entry");
   return code_table[0];
 }
 
