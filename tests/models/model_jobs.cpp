@@ -89,7 +89,7 @@ std::vector<ModelJob> write_model_jobs(const std::filesystem::path& data,
       tiger_features());
   add("face-paint", "derived/gltf/canonical_face_model.glb", "images/mediapipe/facepaint.png",
       face_paint_features(), {{"region", {{"alpha", 0.02}}}}, true);
-  add("bottle-label", "gltf/WaterBottle/WaterBottle.gltf",
+  add("water-bottle", "gltf/WaterBottle/WaterBottle.gltf",
       "images/openclipart/coat_of_arms_of_anglica_01.png", bottle_features());
   add("cow-heart", "derived/gltf/spot.glb", "images/noto/noto_u2764.png", flank_features());
   add("monkey-star", "gltf/Suzanne/Suzanne.gltf", "images/noto/noto_u2b50.png", forehead_features());

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
+#include <cstdlib>
 #include <filesystem>
 
 #include <gtest/gtest.h>
@@ -23,21 +25,27 @@
 namespace applique {
 namespace {
 
-class RealModels : public GpuTest {
+class Models : public GpuTest {
  protected:
-  void SetUp() override {
-    if (std::string(APPLIQUE_TEST_DATA).empty())
-      GTEST_SKIP() << "APPLIQUE_TEST_DATA does not name the folder of third-party models";
-    GpuTest::SetUp();
-    if (IsSkipped()) return;
-    folder_ = std::filesystem::temp_directory_path() / ("applique-models-" + std::to_string(getpid()));
-    std::filesystem::create_directories(folder_);
-    jobs_ = write_model_jobs(APPLIQUE_TEST_DATA, folder_);
-    ASSERT_FALSE(jobs_.empty());
+  /// Generates the demo once for all tests.
+  static void SetUpTestSuite() {
+    GpuTest::SetUpTestSuite();
+    folder = std::filesystem::temp_directory_path() / ("applique-models-" + std::to_string(getpid()));
+    std::filesystem::create_directories(folder);
+    const std::string command = std::string(APPLIQUE_ASSETS_COMMAND) + " '" + folder.string() + "'";
+    ASSERT_EQ(std::system(command.c_str()), 0);  // NOLINT: a command of our own
+    jobs = {{"bust-mask", folder / "bust-mask.json", false},
+            {"bust-emblem", folder / "bust-emblem.json", false},
+            {"bottle-label", folder / "bottle-label.json", false}};
+    if (std::string(APPLIQUE_TEST_DATA).empty()) {
+      std::puts("skipped the third-party models: APPLIQUE_TEST_DATA does not name their folder");
+      return;
+    }
+    for (ModelJob& job : write_model_jobs(APPLIQUE_TEST_DATA, folder)) jobs.push_back(std::move(job));
   }
-  void TearDown() override {
-    std::filesystem::remove_all(folder_);
-    GpuTest::TearDown();
+  static void TearDownTestSuite() {
+    std::filesystem::remove_all(folder);
+    GpuTest::TearDownTestSuite();
   }
 
   static SolvedJob solve(const ModelJob& job) {
@@ -48,12 +56,12 @@ class RealModels : public GpuTest {
     return std::move(*solved);
   }
 
-  std::filesystem::path folder_;
-  std::vector<ModelJob> jobs_;
+  static inline std::filesystem::path folder;
+  static inline std::vector<ModelJob> jobs;
 };
 
-TEST_F(RealModels, AreSolvedExactlyWithoutFlips) {
-  for (const ModelJob& job : jobs_) {
+TEST_F(Models, AreSolvedExactlyWithoutFlips) {
+  for (const ModelJob& job : jobs) {
     SCOPED_TRACE(job.name);
     const SolvedJob solved = solve(job);
     const DecalMap& map = solved.decals[0].map;
@@ -105,10 +113,10 @@ void expect_features_in_texture(const SolvedJob& solved, const Transfer& transfe
   }
 }
 
-TEST_F(RealModels, BakeOnTheGpuAsOnTheCpu) {
+TEST_F(Models, BakeOnTheGpuAsOnTheCpu) {
   auto gpu = GpuTransfer::create(device());
   ASSERT_TRUE(gpu) << gpu.error().message;
-  for (const ModelJob& job : jobs_) {
+  for (const ModelJob& job : jobs) {
     SCOPED_TRACE(job.name);
     const SolvedJob solved = solve(job);
     Document document = solved.model.document;
@@ -142,16 +150,16 @@ TEST_F(RealModels, BakeOnTheGpuAsOnTheCpu) {
   }
 }
 
-TEST_F(RealModels, TheValidatorFindsNothingNew) {
+TEST_F(Models, TheValidatorFindsNothingNew) {
   auto baker = create_baker("");
   ASSERT_TRUE(baker) << baker.error().message;
   std::vector<std::filesystem::path> files;
-  for (const ModelJob& job : jobs_) {
+  for (const ModelJob& job : jobs) {
     SCOPED_TRACE(job.name);
     SolvedJob solved = solve(job);
     const auto baked = bake_job(solved, **baker);
     ASSERT_TRUE(baked) << baked.error().message;
-    const std::filesystem::path output = folder_ / (job.name + ".glb");
+    const std::filesystem::path output = folder / (job.name + ".glb");
     const auto saved = save_document(baked->document, output);
     ASSERT_TRUE(saved) << saved.error().message;
     files.push_back(solved.job.model);
@@ -159,10 +167,10 @@ TEST_F(RealModels, TheValidatorFindsNothingNew) {
   }
   const auto counts = validate(files);
   if (!counts) GTEST_SKIP() << "the Khronos validator is not installed";
-  for (std::size_t i = 0; i < jobs_.size(); ++i)
+  for (std::size_t i = 0; i < jobs.size(); ++i)
     for (const auto& [code, count] : (*counts)[2 * i + 1]) {
       const auto before = (*counts)[2 * i].find(code);
-      EXPECT_NE(before, (*counts)[2 * i].end()) << jobs_[i].name << ": " << code;
+      EXPECT_NE(before, (*counts)[2 * i].end()) << jobs[i].name << ": " << code;
     }
 }
 
