@@ -153,6 +153,39 @@ TEST_F(BakeTest, PutsTheImageThereAndNowhereElse) {
   EXPECT_EQ(decal["warnings"], json::array()) << decal["warnings"];
 }
 
+/// Two nodes, meshes and materials that meet at x = 0: one surface to a decal, which lies half on each.
+TEST_F(BakeTest, CrossesFromOneMaterialToAnother) {
+  write_small_model(folder_ / "model.glb",
+                    {make_plane("Left", 8, -1),
+                     [] {
+                       SmallMesh right = make_plane("Right", 8, 1);
+                       right.material = 1;
+                       return right;
+                     }()},
+                    {{"paint", texture_, {1, 1, 1, 1}}, {"paper", texture_, {1, 1, 1, 1}}});
+  const CommandResult result = bake(job_at(0, 0));
+  ASSERT_EQ(result.status, 0) << result.err;
+  const json report = valid_report();
+  EXPECT_EQ(report["decals"][0]["coverage_status"], "covered");
+  EXPECT_EQ(report["textures"].size(), 2u);
+  const auto model = load_model(folder_ / "out.glb");
+  ASSERT_TRUE(model) << model.error().message;
+  const auto texture_of = [&](const char* name) {
+    return load_model_image(*model, *model->materials[*part_named(*model, name).material].image).value();
+  };
+  const Image left = texture_of("Left"), right = texture_of("Right");
+  // A plane is two units wide, the image one: it takes the quarter of each texture at their common border.
+  for (const int y : {texture_size * 3 / 8, texture_size * 5 / 8}) {
+    const bool top = y < texture_size / 2;
+    for (const int from_border : {3, 10, texture_size / 4 - 4}) {
+      EXPECT_EQ(colour_at(left, texture_size - from_border, y), top ? red : blue);
+      EXPECT_EQ(colour_at(right, from_border - 1, y), top ? green : white);
+    }
+    EXPECT_EQ(colour_at(left, texture_size * 3 / 4 - 4, y), colour_at(texture_, texture_size * 3 / 4 - 4, y));
+    EXPECT_EQ(colour_at(right, texture_size / 4 + 4, y), colour_at(texture_, texture_size / 4 + 4, y));
+  }
+}
+
 TEST_F(BakeTest, MakesATextureOfTheFactorsColour) {
   const CommandResult result = bake(job_at(0, -6));
   ASSERT_EQ(result.status, 0) << result.err;
