@@ -64,6 +64,27 @@ bool write_all(const std::filesystem::path& path, std::span<const std::uint8_t> 
 
 }  // namespace
 
+Result<void> check_distinct(const std::vector<std::filesystem::path>& outputs,
+                            const std::vector<std::filesystem::path>& inputs) {
+  const auto file = [](const std::filesystem::path& path) {
+    std::error_code failed;
+    const std::filesystem::path canonical = std::filesystem::weakly_canonical(path, failed);
+    return failed ? path : canonical;
+  };
+  for (std::size_t i = 0; i < outputs.size(); ++i) {
+    for (std::size_t j = 0; j < i; ++j)
+      if (file(outputs[i]) == file(outputs[j]))
+        return fail(ErrorCode::output_unwritable,
+                    fmt::format("'{}' would be written twice; give each output a name of its own",
+                                outputs[i].string()));
+    for (const std::filesystem::path& input : inputs)
+      if (file(outputs[i]) == file(input))
+        return fail(ErrorCode::output_unwritable,
+                    fmt::format("'{}' is an input; choose another name for the output", outputs[i].string()));
+  }
+  return {};
+}
+
 Result<void> check_writable(const std::filesystem::path& path) {
   std::error_code error;
   if (path.filename().empty() || std::filesystem::is_directory(path, error))

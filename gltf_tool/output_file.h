@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <span>
 #include <string_view>
+#include <vector>
 
 #include "applique/base/error.h"
 
@@ -17,6 +18,11 @@ Result<void> write_file(const std::filesystem::path& path, std::string_view text
 /// Whether `path` could be written: its folder exists and allows it, and it is no folder itself. For asking
 /// before the work rather than after it. Errors: output_unwritable.
 Result<void> check_writable(const std::filesystem::path& path);
+
+/// Whether the outputs are different files, none of which is an input. Errors: output_unwritable, naming the
+/// file.
+Result<void> check_distinct(const std::vector<std::filesystem::path>& outputs,
+                            const std::vector<std::filesystem::path>& inputs);
 
 /// From here on an interrupt (SIGINT, SIGTERM) removes the temporary file that is being written, and ends the
 /// process.

@@ -17,8 +17,11 @@ namespace {
 
 constexpr std::uint32_t cover_limit = 1;      // one sheet
 constexpr double linear_tolerance_px = 0.02;  // §5.1 of the design
-constexpr double on_contour = 1e-9;           // plane units
-constexpr double coincident = 1e-6;           // of the region's diameter
+constexpr double most_coverage = 1.005;       // beyond it the map overlaps itself
+constexpr double least_coverage = 0.01;       // below it the result is of no use
+constexpr double high_stretch = 3;
+constexpr double on_contour = 1e-9;  // plane units
+constexpr double coincident = 1e-6;  // of the region's diameter
 
 /// Adds the time until its end to a counter, in seconds.
 class StageTimer {
@@ -183,6 +186,13 @@ class Solver {
     Growth growth(seed.disc, std::move(seed.feature_faces), input_.region, cover_limit);
     APPLIQUE_CHECK(grow(seed.disc, growth));
     finish(seed.disc, growth);
+    if (map_.quality.coverage < least_coverage)
+      return fail(
+          ErrorCode::not_solved,
+          fmt::format(
+              "decal '{}': only {:.2g} % of the image fits on the surface under it; make it smaller, or "
+              "check the features' places",
+              input_.name, 100 * map_.quality.coverage));
     return {};
   }
 
@@ -395,6 +405,16 @@ class Solver {
                                            "image; move the features nearer to "
                                            "where the image wants them, or add some",
                                            map_.quality.flipped_plane, map_.quality.flipped_image));
+    if (map_.quality.coverage > most_coverage)
+      add("overlapping_map",
+          fmt::format("parts of the region land on the surface more than once ({:.2f} % in all): the "
+                      "features pull the image over itself; check that none are swapped",
+                      percent));
+    if (map_.quality.l2_stretch > high_stretch)
+      add("high_stretch",
+          fmt::format("the image is stretched {:.1f} times as much as need be (L2); make it smaller for "
+                      "this part of the model, or pin it where it is torn",
+                      map_.quality.l2_stretch));
     for (const PairStress& stress : built_.stressed)
       add("feature_stress",
           fmt::format(

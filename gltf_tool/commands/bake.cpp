@@ -52,12 +52,30 @@ CLI::App* add_bake_command(CLI::App& app, BakeArguments& arguments) {
   return command;
 }
 
+namespace {
+
+/// A model may be baked in place; nothing else that the job reads may be written over.
+Result<void> check_outputs(const BakeArguments& arguments, const Job& job) {
+  std::vector<std::filesystem::path> inputs = {job.path};
+  for (const DecalJob& decal : job.decals) inputs.push_back(decal.image);
+  std::vector<std::filesystem::path> outputs = {arguments.output};
+  for (const auto& output : {arguments.report, arguments.preview}) {
+    if (!output) continue;
+    outputs.push_back(*output);
+    APPLIQUE_CHECK(check_distinct({*output}, {job.model}));
+  }
+  return check_distinct(outputs, inputs);
+}
+
+}  // namespace
+
 Result<void> run_bake(const BakeArguments& arguments, const CommonArguments& common) {
   const Stopwatch total;
   APPLIQUE_CHECK(check_writable(arguments.output));
   if (arguments.report) APPLIQUE_CHECK(check_writable(*arguments.report));
   if (arguments.preview) APPLIQUE_CHECK(check_writable(*arguments.preview));
   APPLIQUE_TRY(const Job job, load_job(arguments.job));
+  APPLIQUE_CHECK(check_outputs(arguments, job));
 
   // The device is made while the geometry is solved.
   auto baker_ready = std::async(std::launch::async, [&] { return create_baker(arguments.device); });

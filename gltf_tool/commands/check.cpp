@@ -38,6 +38,11 @@ Result<void> run_check(const CheckArguments& arguments, const CommonArguments& c
   if (arguments.dump_region) APPLIQUE_CHECK(check_writable(*arguments.dump_region));
 
   APPLIQUE_TRY(const Job job, load_job(arguments.job));
+  std::vector<std::filesystem::path> outputs, inputs = {job.path, job.model};
+  for (const DecalJob& decal : job.decals) inputs.push_back(decal.image);
+  for (const auto& output : {arguments.report, arguments.dump_region})
+    if (output) outputs.push_back(*output);
+  APPLIQUE_CHECK(check_distinct(outputs, inputs));
   SolvedJob solved;
   {
     Progress progress(!common.quiet);

@@ -83,6 +83,8 @@ CLI::App* add_render_command(CLI::App& app, RenderArguments& arguments) {
 
 Result<void> run_render(const RenderArguments& arguments, const CommonArguments& common) {
   APPLIQUE_CHECK(check_writable(arguments.output));
+  APPLIQUE_CHECK(
+      check_distinct({arguments.output}, {arguments.model, arguments.job.value_or(arguments.model)}));
   const PictureSize size = parse_size(arguments.size);
   Progress progress(!common.quiet);
   progress.show("loading the model", 0);

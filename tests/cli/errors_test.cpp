@@ -162,6 +162,18 @@ TEST_F(ErrorsTest, OutputThatCannotBeWritten) {
   expect_failure(good_job(), 4, {"image.png/out.glb"}, "bake job.json -o image.png/out.glb");
 }
 
+TEST_F(ErrorsTest, OutputsThatWouldDestroyFiles) {
+  const std::string image = folder_.read("image.png");
+  expect_failure(good_job(), 4, {"'out.glb' would be written twice"},
+                 "bake job.json -o out.glb --preview out.glb");
+  expect_failure(good_job(), 4, {"'job.json' is an input"}, "bake job.json -o out.glb --report job.json");
+  expect_failure(good_job(), 4, {"'image.png' is an input"}, "bake job.json -o out.glb --preview image.png");
+  expect_failure(good_job(), 4, {"'r.json' would be written twice"},
+                 "check job.json --report r.json --dump-region r.json");
+  expect_failure(good_job(), 4, {"'model.glb' is an input"}, "render model.glb -o model.glb");
+  EXPECT_EQ(folder_.read("image.png"), image);
+}
+
 TEST_F(ErrorsTest, OutputOfNoKnownKind) {
   expect_failure(good_job(), 1, {"out.obj", ".glb", ".gltf"}, "bake job.json -o out.obj");
 }

@@ -321,6 +321,27 @@ TEST(DecalErrors, NameTheCulprit) {
   expect_error(surface, lone, ErrorCode::size_missing, "along the surface's normal");
 }
 
+TEST(DecalErrors, TurnDownAnImageFarLargerThanTheSurface) {
+  const SurfaceMesh surface = shapes::plane(8, 8, 1, 1).weld();
+  DecalInput lone = decal(surface, rectangle(), {{{256, 256}, {0.5, 0.5, 0}}});
+  lone.lone = LoneFrame{1000, {0, 1, 0}};
+  expect_error(surface, lone, ErrorCode::not_solved, "make it smaller");
+}
+
+TEST(Decal, WarnsOfFeaturesThatPullTheImageOverItself) {
+  const SurfaceMesh surface = shapes::sphere(4, 1).weld();
+  // The inner two of four features on a row are swapped.
+  const auto at = [](double x) { return Vec3(std::sin(x), 0, std::cos(x)); };
+  const auto map = solve_decal(
+      surface,
+      decal(surface, rectangle(),
+            {{{100, 256}, at(-0.6)}, {{200, 256}, at(0.2)}, {{312, 256}, at(-0.2)}, {{412, 256}, at(0.6)}}));
+  ASSERT_TRUE(map.has_value()) << map.error().message;
+  for (double residual : map->quality.feature_residual) EXPECT_LT(residual, 1e-6);
+  EXPECT_TRUE(std::any_of(map->warnings.begin(), map->warnings.end(),
+                          [](const Warning& warning) { return warning.code == "feature_stress"; }));
+}
+
 TEST(DecalErrors, NameTheFeaturesOnDisconnectedParts) {
   shapes::Soup two = shapes::plane(4, 4, 1, 1);
   const shapes::Soup other = shapes::plane(4, 4, 1, 1);

@@ -129,8 +129,11 @@ std::vector<Pixel> rectangle_outline(const Image& image) {
 Result<std::vector<Pixel>> trace_alpha(const Image& image, double threshold) {
   AlphaMask mask = make_alpha_mask(image, threshold);
   if (std::find(mask.bits.begin(), mask.bits.end(), std::uint8_t{1}) == mask.bits.end()) {
-    return fail(ErrorCode::region_empty,
-                fmt::format("no pixel's alpha is over {:g}; lower the region's \"alpha\"", threshold));
+    return fail(
+        ErrorCode::region_empty,
+        fmt::format("no pixel's alpha is over {:g}; lower the region's \"alpha\", or give it a \"contour\" "
+                    "if the image is transparent all over",
+                    threshold));
   }
   fill_holes(mask);
   bridge_islands(mask);
