@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "applique/base/parallel.h"
 #include "applique/base/predicates.h"
 #include "applique/embed/align.h"
 #include "applique/patch/seed.h"
@@ -156,6 +157,18 @@ Result<Similarity> lone_alignment(const SurfaceMesh& surface, const DecalInput& 
   return Similarity{scale, target - scale * feature};
 }
 
+/// The warp at many places, on all cores.
+std::vector<Vec2> warp_all(const Warp& warp, const std::vector<Vec2>& places) {
+  if (warp.steps == 0) return places;
+  constexpr std::size_t batch = 256;
+  std::vector<Vec2> warped(places.size());
+  parallel_for(static_cast<int>((places.size() + batch - 1) / batch), [&](int i) {
+    const std::size_t first = batch * static_cast<std::size_t>(i);
+    for (std::size_t k = first; k < std::min(first + batch, places.size()); ++k) warped[k] = warp(places[k]);
+  });
+  return warped;
+}
+
 /// One decal in the making: the state that the growth's iterations share.
 class Solver {
  public:
@@ -229,7 +242,8 @@ class Solver {
     StageTimer stage(map_.times.warp);
     built_ = build_warp(features, targets_, map_.graph, probes(features));
     points_.clear();
-    for (Vec2 z : plane) points_.push_back({z, built_.warp(z)});
+    const std::vector<Vec2> image = warp_all(built_.warp, plane);
+    for (std::size_t v = 0; v < plane.size(); ++v) points_.push_back({plane[v], image[v]});
     return {};
   }
 
@@ -349,26 +363,39 @@ class Solver {
     map_.linear.resize(map_.patch.faces.size(), true);
     if (map_.warp.steps == 0) return;
     const double tolerance = linear_tolerance_px / input_.region.frame().pixels_per_unit();
-    const auto bends = [&](std::initializer_list<PatchVertexId> corners) {
+    // Where interpolation is tested, what it gives there, and the faces that depend on it.
+    struct Test {
+      Vec2 image;
+      PatchFaceId face, across;
+    };
+    std::vector<Vec2> places;
+    std::vector<Test> tests;
+    const auto test = [&](std::initializer_list<PatchVertexId> corners, PatchFaceId face,
+                          PatchFaceId across) {
+      const auto n = static_cast<double>(corners.size());
       Vec2 plane = 0, image = 0;
       for (PatchVertexId v : corners) {
-        plane += map_.plane[v];
-        image += map_.image[v];
+        plane += map_.plane[v] / n;
+        image += map_.image[v] / n;
       }
-      const auto n = static_cast<double>(corners.size());
-      return std::abs(map_.warp(plane / n) - image / n) > tolerance;
+      places.push_back(plane);
+      tests.push_back({image, face, across});
     };
     for (PatchFaceId q : ids<PatchFaceId>(map_.patch.faces.size())) {
-      const PatchFace& face = map_.patch.faces[q];
+      const auto& [mesh_face, v, neighbours] = map_.patch.faces[q];
       if (!map_.textured[q]) continue;
-      if (bends({face.vertices[0], face.vertices[1], face.vertices[2]})) map_.linear[q] = false;
+      test({v[0], v[1], v[2]}, q, {});
       for (int k = 0; k < 3; ++k) {
-        const PatchFaceId across = face.neighbours[k];
+        const PatchFaceId across = neighbours[k];
         if (across.valid() && map_.textured[across] && across < q) continue;  // tested from there
-        if (!bends({face.vertices[(k + 1) % 3], face.vertices[(k + 2) % 3]})) continue;
-        map_.linear[q] = false;
-        if (across.valid()) map_.linear[across] = false;
+        test({v[(k + 1) % 3], v[(k + 2) % 3]}, q, across);
       }
+    }
+    const std::vector<Vec2> exact = warp_all(map_.warp, places);
+    for (std::size_t i = 0; i < tests.size(); ++i) {
+      if (std::abs(exact[i] - tests[i].image) <= tolerance) continue;
+      map_.linear[tests[i].face] = false;
+      if (tests[i].across.valid()) map_.linear[tests[i].across] = false;
     }
     for (PatchFaceId q : growth.feature_faces()) map_.linear[q] = false;
   }
