@@ -11,6 +11,7 @@
 #include "applique/patch/patch.h"
 #include "applique/quality/map_quality.h"
 #include "applique/region/region.h"
+#include "applique/solve_trace.h"
 #include "applique/surface/surface_mesh.h"
 #include "applique/warp/warp.h"
 
@@ -39,7 +40,8 @@ struct DecalInput {
 
 struct SolveOptions {
   Energy energy = Energy::isometric;
-  int max_solves = 60;  ///< Embeddings before giving up.
+  int max_solves = 60;          ///< Embeddings before giving up.
+  SolveTrace* trace = nullptr;  ///< Told what happened, when given.
 };
 
 /// Seconds by stage.

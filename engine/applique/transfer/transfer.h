@@ -35,6 +35,9 @@ struct Transfer {
   std::vector<TransferFace> faces;
   std::vector<std::array<Texel, 3>> foreign;  ///< UV triangles that use the texture and are not in `faces`.
   const Warp* warp = nullptr;
+  /// By face, corner and group of the warp, [(3 * face + corner) * groups + group]: what the warp is to be
+  /// told at a place in the face, interpolated linearly. Empty when the warp has one group.
+  std::vector<double> influence;
   const DecalImage* image = nullptr;
   double opacity = 1;
   BlendMode blend = BlendMode::normal;

@@ -1,12 +1,28 @@
 #include "applique/warp/warp.h"
 
+#include <algorithm>
+#include <limits>
+
 namespace applique {
 namespace {
 
 // §3.1 and "vel" of §5.2 of the design. With beta_ij = 1 / (d_i^2 d_j^2), every weight is multiplied by
 // d_m^2, m the nearest feature: nothing is divided by a small number, and at a feature only its own pairs are
-// left, each of which moves it at its own velocity. `inverse` is scratch: 1 / d_k^2, but 1 for m.
-Vec2 velocity_at(const Warp& warp, Vec2 p, std::uint32_t stage, std::vector<double>& inverse) {
+// left, each of which moves it at its own velocity. With groups, d_k^2 stands for d_k^2 / a_k, a_k the ramped
+// influence of k's group (§3.7), infinite where that is zero.
+struct Scratch {
+  Scratch(const Warp& warp, std::span<const double> influence) : inverse(warp.features) {
+    if (warp.groups == 1) return;
+    APPLIQUE_ASSERT(influence.size() == warp.groups);
+    for (std::uint32_t k = 0; k < warp.features; ++k)
+      share.push_back(influence_ramp(influence[warp.group[k]], warp.groups));
+  }
+  std::vector<double> share;    // a_k by feature; empty when there is one group
+  std::vector<double> inverse;  // 1 / d_k^2, but 1 for m
+};
+
+Vec2 velocity_at(const Warp& warp, Vec2 p, std::uint32_t stage, Scratch& scratch) {
+  std::vector<double>& inverse = scratch.inverse;
   const Vec2* position = warp.position.data() + std::size_t{stage} * warp.features;
   const Vec2* lambda = warp.lambda.data() + stage * warp.pairs.size();
   const Vec2* offset = warp.offset.data() + stage * warp.pairs.size();
@@ -14,7 +30,9 @@ Vec2 velocity_at(const Warp& warp, Vec2 p, std::uint32_t stage, std::vector<doub
   std::uint32_t nearest = 0;
   double nearest_squared = 0;
   for (std::uint32_t k = 0; k < warp.features; ++k) {
-    const double squared = std::norm(p - position[k]);
+    double squared = std::norm(p - position[k]);
+    if (!scratch.share.empty())
+      squared = scratch.share[k] > 0 ? squared / scratch.share[k] : std::numeric_limits<double>::infinity();
     inverse[k] = squared;
     if (k == 0 || squared < nearest_squared) {
       nearest = k;
@@ -41,13 +59,19 @@ Vec2 velocity_at(const Warp& warp, Vec2 p, std::uint32_t stage, std::vector<doub
 
 }  // namespace
 
-Vec2 Warp::velocity(Vec2 p, std::uint32_t stage) const {
-  std::vector<double> scratch(features);
+double influence_ramp(double influence, std::uint32_t groups) {
+  const double threshold = std::min(0.05, 0.5 / groups);
+  const double x = std::clamp((influence - threshold) / (1 - 2 * threshold), 0.0, 1.0);
+  return x * x * (3 - 2 * x);
+}
+
+Vec2 Warp::velocity(Vec2 p, std::uint32_t stage, std::span<const double> influence) const {
+  Scratch scratch(*this, influence);
   return velocity_at(*this, p, stage, scratch);
 }
 
-Vec2 Warp::operator()(Vec2 p) const {
-  std::vector<double> scratch(features);
+Vec2 Warp::operator()(Vec2 p, std::span<const double> influence) const {
+  Scratch scratch(*this, influence);
   const double h = 1.0 / steps;
   for (std::uint32_t step = 0; step < steps; ++step) {
     const Vec2 k1 = velocity_at(*this, p, 3 * step, scratch);

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <vector>
+
+#include "applique/base/ids.h"
+#include "applique/base/types.h"
+#include "applique/patch/patch.h"
+
+namespace applique {
+
+/// What a solve went through, kept when SolveOptions::trace asks for it: for pictures of the method and for
+/// tests.
+struct SolveTrace {
+  /// The patch after one embedding, before it is peeled and grown.
+  struct Step {
+    Patch patch;
+    IdVector<PatchVertexId, Vec2> plane;   ///< The aligned embedding.
+    IdVector<PatchVertexId, Vec2> image;   ///< Where the warp puts the vertices in the image, plane units.
+    IdVector<PatchVertexId, char> inside;  ///< The set S of §5.2.1 of the paper.
+    std::vector<Vec2> features;            ///< Where the features are in the plane.
+  };
+  std::vector<std::vector<VertexId>> paths;  ///< By FeatureGraph::tree: the surface vertices passed.
+  std::vector<Step> steps;                   ///< steps[0] is the seed.
+};
+
+}  // namespace applique
