@@ -21,8 +21,9 @@ constexpr double linear_tolerance_px = 0.02;  // §5.1 of the design
 constexpr double most_coverage = 1.005;       // beyond it the map overlaps itself
 constexpr double least_coverage = 0.01;       // below it the result is of no use
 constexpr double high_stretch = 3;
-constexpr double on_contour = 1e-9;  // plane units
-constexpr double coincident = 1e-6;  // of the region's diameter
+constexpr double few_changes = 0.03;  // of a patch's faces
+constexpr double on_contour = 1e-9;   // plane units
+constexpr double coincident = 1e-6;   // of the region's diameter
 
 /// Adds the time until its end to a counter, in seconds.
 class StageTimer {
@@ -230,8 +231,7 @@ class Solver {
       StageTimer stage(map_.times.embed);
       // The last embedding, undone to the surface's scale, is where an isometric one may start from.
       std::vector<Vec2> start;
-      if (rung_ == EmbeddingRung::descended)
-        for (const PatchPoint& point : points_) start.push_back(point.plane / scale_);
+      for (const PatchPoint& point : points_) start.push_back(point.plane / scale_);
       Embedding embedding = embed_disc(measure_disc(disc), options, start);
       rung_ = embedding.rung;
       plane = std::move(embedding.plane);
@@ -306,14 +306,17 @@ class Solver {
       const std::size_t peeled = energy == Energy::conformal && !padded ? growth.peel(points_, inside) : 0;
       const std::size_t added =
           growth.grow(points_, inside, scale_, {}) + growth.fill_pockets(points_, inside, scale_);
-      if (added == 0 && peeled == 0) {
+      // What is still to come of a patch that hardly changes, the margin brings as well.
+      const double settled = padded ? 0 : few_changes * static_cast<double>(disc.faces().size());
+      if (static_cast<double>(added + peeled) <= settled) {
         if (energy != options_.energy) {
           energy = options_.energy;
-          continue;
+        } else if (padded) {
+          break;
+        } else {
+          growth.pad(points_);
+          padded = true;
         }
-        if (padded) break;
-        growth.pad(points_);
-        padded = true;
       }
       growth.compact(points_);
 #ifdef APPLIQUE_CHECK_INVARIANTS
