@@ -11,6 +11,7 @@
 #include "applique/base/predicates.h"
 #include "applique/embed/align.h"
 #include "applique/patch/seed.h"
+#include "applique/patch/sheets.h"
 #include "applique/warp/build_warp.h"
 
 namespace applique {
@@ -344,10 +345,11 @@ class Solver {
     }
     map_.warp = std::move(built_.warp);
     map_.depth.resize(map_.patch.faces.size(), 0);
+    map_.sheet = rank_sheets(map_.patch, map_.depth);
     map_.influence.assign(map_.patch.vertices.size(), 1);
     mark_linear_faces(growth);
     map_.quality = measure_quality(surface_, map_.patch, map_.plane, map_.image, map_.textured, map_.warp,
-                                   input_.region);
+                                   input_.region, map_.influence);
     for (std::size_t k = 0; k < targets_.size(); ++k) {
       const Vec2 at = map_.warp(
           interpolate(disc, growth.feature_faces()[k], input_.features[k].surface, map_.plane.raw()));
