@@ -14,6 +14,7 @@
 #include "applique/embed/self_overlap.h"
 #include "applique/patch/depth.h"
 #include "applique/patch/seed.h"
+#include "applique/patch/sheets.h"
 #include "applique/region/clusters.h"
 #include "applique/region/influence.h"
 #include "applique/warp/build_warp.h"
@@ -278,15 +279,8 @@ class Solver {
                                               targets_[0], plane));
     } else {
       // Where the image lies over itself only the graph's triangles tell.
-      if ((groups_.count == 1 || !map_.graph.triangles.empty()) &&
-          is_mirrored(features, targets_, map_.graph.triangles))
-        return fail(
-            ErrorCode::features_mirrored,
-            fmt::format(
-                "decal '{}': the features {} run one way round in the image and the other way round on "
-                "the surface, so that the image would have to be mirrored; swap the places of left and "
-                "right, or mirror the image",
-                input_.name, feature_range()));
+      mirrored_ = (groups_.count == 1 || !map_.graph.triangles.empty()) &&
+                  is_mirrored(features, targets_, map_.graph.triangles);
       similarity = groups_.count > 1 ? fit_by_edges(features, targets_, map_.graph.tree)
                                      : fit_similarity(features, targets_);
     }
@@ -309,10 +303,8 @@ class Solver {
     const bool one = std::all_of(clusters_.begin(), clusters_.end(), [](std::uint32_t g) { return g == 0; });
     const auto groups = cut_overlapping_groups(clusters_, features, map_.graph, one && !graph);
     if (groups == groups_.of) return;
-    groups_ = {};
-    if (std::all_of(groups.begin(), groups.end(), [](std::uint32_t g) { return g == 0; })) return;
     influence_field_.emplace(input_.region, targets_, map_.graph, groups);
-    groups_ = {influence_field_->groups(), groups, influence_field_->meeting()};
+    groups_ = groups_of(*influence_field_, groups);
   }
 
   /// The warp of the embedding, and where it takes the vertices. With groups, a vertex is under the influence
@@ -390,6 +382,15 @@ class Solver {
       const std::size_t added =
           growth.grow(points_, inside, scale_, {}) + growth.fill_pockets(points_, inside, scale_);
       if (added == 0 && peeled == 0) {
+        // Thin patches mislead: what they say of the features' order counts once the patch is grown.
+        if (mirrored_)
+          return fail(
+              ErrorCode::features_mirrored,
+              fmt::format(
+                  "decal '{}': the features {} run one way round in the image and the other way round on "
+                  "the surface, so that the image would have to be mirrored; swap the places of left and "
+                  "right, or mirror the image",
+                  input_.name, feature_range()));
         if (energy != options_.energy) {
           energy = options_.energy;
           continue;
@@ -472,7 +473,7 @@ class Solver {
     order_sheets(growth);
     mark_linear_faces(growth);
     map_.quality = measure_quality(surface_, map_.patch, map_.plane, map_.image, map_.textured, map_.warp,
-                                   input_.region);
+                                   input_.region, map_.influence);
     for (std::size_t k = 0; k < targets_.size(); ++k) {
       const auto& corners = disc.faces()[growth.feature_faces()[k]].vertices;
       const std::vector<double> influence =
@@ -492,11 +493,13 @@ class Solver {
     for (const PatchFace& face : map_.patch.faces)
       if (face.mesh_face.valid()) map_.sheets = std::max(map_.sheets, ++cover[face.mesh_face]);
     map_.depth.resize(map_.patch.faces.size(), 0);
+    map_.sheet.resize(map_.patch.faces.size(), 0);
     if (map_.sheets == 1) return;
     std::vector<DepthFeature> features;
     for (std::size_t k = 0; k < targets_.size(); ++k)
       features.push_back({targets_[k], growth.feature_faces()[k], input_.features[k].depth});
     FaceDepths depths = spread_depths(map_.patch, map_.image, features, map_.graph.tree);
+    map_.sheet = rank_sheets(map_.patch, depths);
     map_.depth = std::move(depths.depth);
   }
 
@@ -537,7 +540,13 @@ class Solver {
       for (int k = 0; k < 3; ++k) {
         const PatchFaceId across = neighbours[k];
         if (across.valid() && map_.textured[across] && across < q) continue;  // tested from there
-        test({v[(k + 1) % 3], v[(k + 2) % 3]}, q, across);
+        const PatchVertexId a = v[(k + 1) % 3], b = v[(k + 2) % 3];
+        test({a, b}, q, across);
+        // An influence that goes from 0 to 1 along the side is right in its middle.
+        if (map_.groups > 1) {
+          test({a, a, a, b}, q, across);
+          test({a, b, b, b}, q, across);
+        }
       }
     }
     const std::vector<Vec2> exact = warp_all(map_.warp, places, influence);
@@ -609,6 +618,7 @@ class Solver {
   std::vector<Vec2> targets_;  ///< Features in the image, plane units.
   PatchPoints points_;
   BuiltWarp built_;
+  bool mirrored_ = false;  ///< By the last embedding, the features run the other way round on the surface.
   std::vector<std::uint32_t> clusters_;  ///< Group by feature, as the image has them; once asked for.
   FeatureGroups groups_;
   std::optional<InfluenceField> influence_field_;  ///< Of groups_, while there are several.

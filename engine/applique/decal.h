@@ -69,6 +69,8 @@ struct DecalMap {
   IdVector<PatchFaceId, char> linear;    ///< The linear map stands for the warp (to 0.02 px).
   IdVector<PatchFaceId, char> textured;  ///< The face meets the region (and is no bridged hole).
   IdVector<PatchFaceId, double> depth;   ///< Of overlapping faces, from the features'; all 0 without overlap.
+  /// Rank of each patch face among those over its surface face, 0 = bottom.
+  IdVector<PatchFaceId, std::uint32_t> sheet;
   /// Weight of each group of features at each vertex, [vertex * groups + group]; they sum to 1. One group:
   /// all 1.
   std::uint32_t groups = 1;

@@ -85,10 +85,13 @@ FaceDepths spread_depths(const Patch& patch, const IdVector<PatchVertexId, Vec2>
     laplacian.setFromTriplets(entries.begin(), entries.end());
     solved = Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>>(laplacian).solve(right);
   }
+  // Equal depths are to be equal to the bit, so that `order` decides.
+  const bool level = std::all_of(features.begin(), features.end(),
+                                 [&](const DepthFeature& f) { return f.depth == features[0].depth; });
   FaceDepths depths;
   for (PatchFaceId q : ids<PatchFaceId>(patch.faces.size())) {
     const Eigen::RowVector2d value = fixed[q] ? *fixed[q] : Eigen::RowVector2d(solved.row(row[q]));
-    depths.depth.push_back(value[0]);
+    depths.depth.push_back(level ? features[0].depth : value[0]);
     depths.order.push_back(value[1]);
   }
   return depths;

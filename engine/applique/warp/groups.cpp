@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "applique/base/predicates.h"
+#include "applique/warp/warp.h"
 
 namespace applique {
 namespace {
@@ -66,6 +67,21 @@ class RunCutter {
 };
 
 }  // namespace
+
+FeatureGroups groups_of(const InfluenceField& field, std::vector<std::uint32_t> group) {
+  FeatureGroups groups{field.groups(), std::move(group), {}};
+  if (groups.count == 1) return {};
+  groups.meet.assign(std::size_t{groups.count} * groups.count, false);
+  for (std::uint32_t point = 0; point < field.triangulation().points.size(); ++point) {
+    const auto influence = field.at_point(point);
+    for (std::uint32_t a = 0; a < groups.count; ++a) {
+      if (influence_ramp(influence[a], groups.count) <= 0) continue;
+      for (std::uint32_t b = 0; b < groups.count; ++b)
+        if (influence_ramp(influence[b], groups.count) > 0) groups.meet[a * groups.count + b] = true;
+    }
+  }
+  return groups;
+}
 
 bool graph_overlaps(std::span<const Vec2> features, const FeatureGraph& graph) {
   bool overlaps = false;

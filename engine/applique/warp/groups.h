@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "applique/region/feature_graph.h"
+#include "applique/region/influence.h"
 
 namespace applique {
 
@@ -20,6 +21,9 @@ struct FeatureGroups {
     return count > 1 && meet[of[pair[0]] * count + of[pair[1]]] == 0;
   }
 };
+
+/// The groups of a field of influence, and which of them meet in it. `group` by feature, as the field has them.
+FeatureGroups groups_of(const InfluenceField& field, std::vector<std::uint32_t> group);
 
 /// Whether the planar graph does not stay planar when its features are where the embedding has them: two
 /// edges without a common feature cross, or a triangle turns over (§3.6 of the design). The image then has to
