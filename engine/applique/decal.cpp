@@ -214,6 +214,7 @@ class Solver {
     std::vector<SurfacePoint> places;
     for (const Feature& feature : input_.features) places.push_back(feature.surface);
     auto seed = build_seed(bridged_, places, map_.graph.tree, cover_limit);
+    if (seed && options_.trace != nullptr) *options_.trace = {seed->paths, {}};
     if (seed) return std::move(*seed);
     const auto [i, j] = seed.error().disconnected;
     return fail(ErrorCode::features_disconnected,
@@ -300,6 +301,7 @@ class Solver {
     bool padded = false;
     while (true) {
       APPLIQUE_CHECK(parameterize(disc, growth, {energy, !padded}));
+      if (options_.trace != nullptr) trace_step(disc, growth);
       StageTimer stage(map_.times.grow);
       if (map_.solves >= options_.max_solves) break;
       auto inside = growth.inside(points_);
@@ -324,19 +326,57 @@ class Solver {
     return {};
   }
 
-  void finish(const ImmersedDisc& disc, const Growth& growth) {
-    StageTimer stage(map_.times.quality);
-    for (const PatchFace& face : disc.faces()) {
-      const bool bridge = bridged_.is_bridge(face.mesh_face);
-      map_.patch.faces.push_back(face);
-      if (bridge) map_.patch.faces.raw().back().mesh_face = FaceId();
-      const auto& v = face.vertices;
-      map_.textured.push_back(!bridge && input_.region.meets_triangle(
-                                             points_[v[0]].image, points_[v[1]].image, points_[v[2]].image));
+  /// The disc as a patch over the surface alone, without what bridges its holes.
+  [[nodiscard]] Patch patch_of(const ImmersedDisc& disc) const {
+    Patch patch;
+    for (PatchFace face : disc.faces()) {
+      if (bridged_.is_bridge(face.mesh_face)) face.mesh_face = FaceId();
+      patch.faces.push_back(face);
     }
     for (PatchVertexId v : ids<PatchVertexId>(disc.vertex_count())) {
       const VertexId over = disc.mesh_vertex(v);
-      map_.patch.vertices.push_back(bridged_.is_bridge(over) ? VertexId() : over);
+      patch.vertices.push_back(bridged_.is_bridge(over) ? VertexId() : over);
+    }
+    return patch;
+  }
+
+  void trace_step(const ImmersedDisc& disc, const Growth& growth) {
+    SolveTrace::Step step;
+    step.patch = patch_of(disc);
+    for (const PatchPoint& point : points_) {
+      step.plane.push_back(point.plane);
+      step.image.push_back(point.image);
+    }
+    step.inside = growth.inside(points_);
+    for (std::size_t k = 0; k < targets_.size(); ++k)
+      step.features.push_back(
+          interpolate(disc, growth.feature_faces()[k], input_.features[k].surface, step.plane.raw()));
+    step.contour = divided_contour();
+    if (built_.warp.steps > 0)
+      for (Vec2& z : step.contour) z = built_.warp.backward(z);
+    options_.trace->steps.push_back(std::move(step));
+  }
+
+  /// The region's polygon with its edges divided finely enough to show how they bend.
+  [[nodiscard]] std::vector<Vec2> divided_contour() const {
+    const std::vector<Vec2>& polygon = input_.region.polygon();
+    std::vector<Vec2> contour;
+    for (std::size_t i = 0; i < polygon.size(); ++i) {
+      const Vec2 edge = polygon[(i + 1) % polygon.size()] - polygon[i];
+      const auto parts = static_cast<int>(1 + std::abs(edge) / (0.01 * input_.region.diameter()));
+      for (int k = 0; k < parts; ++k) contour.push_back(polygon[i] + static_cast<double>(k) / parts * edge);
+    }
+    return contour;
+  }
+
+  void finish(const ImmersedDisc& disc, const Growth& growth) {
+    StageTimer stage(map_.times.quality);
+    map_.patch = patch_of(disc);
+    for (const PatchFace& face : map_.patch.faces) {
+      const auto& v = face.vertices;
+      map_.textured.push_back(
+          face.mesh_face.valid() &&
+          input_.region.meets_triangle(points_[v[0]].image, points_[v[1]].image, points_[v[2]].image));
     }
     for (const PatchPoint& point : points_) {
       map_.plane.push_back(point.plane);

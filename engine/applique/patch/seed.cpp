@@ -60,14 +60,16 @@ void add_ring(ImmersedDisc& disc, std::uint32_t cover_limit) {
 
 tl::expected<Seed, SeedFailure> build_seed(BridgedSurface& surface, std::span<const SurfacePoint> features,
                                            std::span<const FeaturePair> tree, std::uint32_t cover_limit) {
-  Seed seed{ImmersedDisc(surface, features[0].face), std::vector<PatchFaceId>(features.size())};
+  Seed seed{ImmersedDisc(surface, features[0].face), std::vector<PatchFaceId>(features.size()),
+            std::vector<std::vector<VertexId>>(tree.size())};
   seed.feature_faces[0] = PatchFaceId(0);
   seed.disc.pin(PatchFaceId(0));
   // Breadth first from feature 0: an edge is walked as soon as one of its ends is placed.
   std::vector<std::uint32_t> queue = {0};
   for (std::size_t i = 0; i < queue.size(); ++i) {
     const std::uint32_t from = queue[i];
-    for (const FeaturePair& edge : tree) {
+    for (std::size_t e = 0; e < tree.size(); ++e) {
+      const FeaturePair& edge = tree[e];
       if (edge[0] != from && edge[1] != from) continue;
       const std::uint32_t to = edge[0] == from ? edge[1] : edge[0];
       if (seed.feature_faces[to].valid()) continue;
@@ -76,6 +78,7 @@ tl::expected<Seed, SeedFailure> build_seed(BridgedSurface& surface, std::span<co
       seed.feature_faces[to] =
           thicken_path(seed.disc, seed.feature_faces[from], path, features[to].face, cover_limit);
       seed.disc.pin(seed.feature_faces[to]);
+      seed.paths[e] = path;
       queue.push_back(to);
     }
   }

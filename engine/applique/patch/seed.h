@@ -14,7 +14,8 @@ namespace applique {
 /// features where their paths cross; a thickened tree is a disc for any features, so nobody is asked.
 struct Seed {
   ImmersedDisc disc;
-  std::vector<PatchFaceId> feature_faces;  ///< The patch face over each feature, pinned.
+  std::vector<PatchFaceId> feature_faces;    ///< The patch face over each feature, pinned.
+  std::vector<std::vector<VertexId>> paths;  ///< By edge of the tree: the surface vertices passed.
 };
 
 /// `features` lie on faces of the surface's mesh and `tree` spans them. Every surface face is covered at most
