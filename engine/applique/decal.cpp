@@ -298,10 +298,10 @@ class Solver {
     bool padded = false;
     while (true) {
       APPLIQUE_CHECK(parameterize(disc, growth, {energy, !padded}));
+      if (options_.trace != nullptr) trace_step(disc, growth);
       StageTimer stage(map_.times.grow);
       if (map_.solves >= options_.max_solves) break;
       auto inside = growth.inside(points_);
-      if (options_.trace != nullptr) record_step(disc, growth, inside);
       const std::size_t peeled = energy == Energy::conformal && !padded ? growth.peel(points_, inside) : 0;
       const std::size_t added =
           growth.grow(points_, inside, scale_, {}) + growth.fill_pockets(points_, inside, scale_);
@@ -349,32 +349,52 @@ class Solver {
     return area < most_patch_area * input_.region.area();
   }
 
-  void record_step(const ImmersedDisc& disc, const Growth& growth,
-                   const IdVector<PatchVertexId, char>& inside) {
-    SolveTrace::Step step{patch_of(disc), {}, {}, inside, {}};
-    std::vector<Vec2> plane;
-    for (const PatchPoint& point : points_) {
-      plane.push_back(point.plane);
-      step.image.push_back(point.image);
-    }
-    for (std::size_t k = 0; k < targets_.size(); ++k)
-      step.features.push_back(
-          interpolate(disc, growth.feature_faces()[k], input_.features[k].surface, plane));
-    step.plane = IdVector<PatchVertexId, Vec2>(std::move(plane));
-    options_.trace->steps.push_back(std::move(step));
-  }
-
+  /// The disc as a patch over the surface alone, without what bridges its holes.
   [[nodiscard]] Patch patch_of(const ImmersedDisc& disc) const {
     Patch patch;
-    for (const PatchFace& face : disc.faces()) {
+    for (PatchFace face : disc.faces()) {
+      if (bridged_.is_bridge(face.mesh_face)) face.mesh_face = FaceId();
       patch.faces.push_back(face);
-      if (bridged_.is_bridge(face.mesh_face)) patch.faces.raw().back().mesh_face = FaceId();
     }
     for (PatchVertexId v : ids<PatchVertexId>(disc.vertex_count())) {
       const VertexId over = disc.mesh_vertex(v);
       patch.vertices.push_back(bridged_.is_bridge(over) ? VertexId() : over);
     }
     return patch;
+  }
+
+  void trace_step(const ImmersedDisc& disc, const Growth& growth) {
+    SolveTrace::Step step;
+    step.patch = patch_of(disc);
+    for (const PatchPoint& point : points_) {
+      step.plane.push_back(point.plane);
+      step.image.push_back(point.image);
+    }
+    step.inside = growth.inside(points_);
+    for (std::size_t k = 0; k < targets_.size(); ++k)
+      step.features.push_back(
+          interpolate(disc, growth.feature_faces()[k], input_.features[k].surface, step.plane.raw()));
+    step.contour = divided_contour();
+    if (built_.warp.steps > 0) {
+      std::vector<double> influence(groups_.count);
+      for (Vec2& z : step.contour) {
+        if (groups_.count > 1) influence_field_->at(z, influence);
+        z = built_.warp.backward(z, influence);
+      }
+    }
+    options_.trace->steps.push_back(std::move(step));
+  }
+
+  /// The region's polygon with its edges divided finely enough to show how they bend.
+  [[nodiscard]] std::vector<Vec2> divided_contour() const {
+    const std::vector<Vec2>& polygon = input_.region.polygon();
+    std::vector<Vec2> contour;
+    for (std::size_t i = 0; i < polygon.size(); ++i) {
+      const Vec2 edge = polygon[(i + 1) % polygon.size()] - polygon[i];
+      const auto parts = static_cast<int>(1 + std::abs(edge) / (0.01 * input_.region.diameter()));
+      for (int k = 0; k < parts; ++k) contour.push_back(polygon[i] + static_cast<double>(k) / parts * edge);
+    }
+    return contour;
   }
 
   void finish(const ImmersedDisc& disc, const Growth& growth) {

@@ -96,6 +96,18 @@ TEST(Warp, StepsAreRefinedUntilTheProbesRest) {
   for (Vec2 z : probes) EXPECT_LT(std::abs(coarse.warp(z) - fine.warp(z)), 4e-5);
 }
 
+TEST(Warp, RunsBackwardsToo) {
+  std::mt19937 random(8);
+  const std::vector<Vec2> from = random_points(random, 6, 0.8);
+  std::vector<Vec2> to = from;
+  std::uniform_real_distribution<double> shift(-0.1, 0.1);
+  for (Vec2& z : to) z += Vec2(shift(random), shift(random));
+  const std::vector<Vec2> places = random_points(random, 12, 1);
+  const Warp warp = build_warp(from, to, open_graph(6), places).warp;
+  for (const Vec2 z : places) EXPECT_LT(std::abs(warp.backward(warp(z)) - z), 1e-4);
+  for (std::size_t k = 0; k < to.size(); ++k) EXPECT_LT(std::abs(warp.backward(to[k]) - from[k]), 1e-13);
+}
+
 TEST(Warp, OneAndTwoFeaturesNeedNone) {
   EXPECT_EQ(build_warp(std::vector<Vec2>{{0, 0}}, std::vector<Vec2>{{1, 1}}, open_graph(1), {}).warp.steps,
             0u);
