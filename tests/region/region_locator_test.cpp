@@ -1,29 +1,15 @@
 #include "applique/region/region_locator.h"
 
 #include <cmath>
-#include <numbers>
 #include <random>
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
+#include "region/contours.h"
+
 namespace applique {
 namespace {
-
-constexpr ImageFrame frame = {256, 256};
-
-Region star(int vertices, unsigned seed) {
-  std::mt19937 random(seed);
-  std::uniform_real_distribution<double> radius(20, 120);
-  std::vector<Pixel> contour;
-  for (int i = 0; i < vertices; ++i) {
-    const double angle = 2 * std::numbers::pi * i / vertices, r = radius(random);
-    contour.push_back({128 + r * std::cos(angle), 128 + r * std::sin(angle)});
-  }
-  auto region = Region::from_contour(contour, frame);
-  EXPECT_TRUE(region) << region.error().message;
-  return std::move(*region);
-}
 
 Vec2 place(const RegionTriangulation& mesh, const RegionLocation& location) {
   Vec2 z = 0;
@@ -34,7 +20,7 @@ Vec2 place(const RegionTriangulation& mesh, const RegionLocation& location) {
 }
 
 RC_GTEST_PROP(RegionLocator, FindsTheNearestPlace, ()) {
-  const Region region = star(*rc::gen::inRange(3, 80), *rc::gen::arbitrary<unsigned>());
+  const Region region = random_star(*rc::gen::inRange(3, 80), *rc::gen::arbitrary<unsigned>());
   const double max_edge = *rc::gen::element(0.0, region.diameter() / 20);
   const RegionTriangulation mesh = triangulate_region(region, {}, {}, {max_edge});
   const RegionLocator locator(mesh);

@@ -2,7 +2,6 @@
 
 #include <cmath>
 #include <map>
-#include <numbers>
 #include <random>
 #include <set>
 
@@ -10,32 +9,10 @@
 #include <rapidcheck/gtest.h>
 
 #include "applique/base/predicates.h"
+#include "region/contours.h"
 
 namespace applique {
 namespace {
-
-constexpr ImageFrame frame = {256, 256};
-
-Region make_region(const std::vector<Pixel>& contour, const ImageFrame& image_frame = frame) {
-  auto region = Region::from_contour(contour, image_frame);
-  EXPECT_TRUE(region) << region.error().message;
-  return std::move(*region);
-}
-
-Vec2 plane(double x, double y) {
-  return frame.to_plane({x, y});
-}
-
-std::vector<Pixel> star_contour(int vertices, unsigned seed) {
-  std::mt19937 random(seed);
-  std::uniform_real_distribution<double> radius(20, 120);
-  std::vector<Pixel> contour;
-  for (int i = 0; i < vertices; ++i) {
-    const double angle = 2 * std::numbers::pi * i / vertices, r = radius(random);
-    contour.push_back({128 + r * std::cos(angle), 128 + r * std::sin(angle)});
-  }
-  return contour;
-}
 
 /// A circle about (512, 512) as an image's alpha shows it: steps of one pixel.
 std::vector<Pixel> stepped_circle(double radius) {
@@ -59,8 +36,6 @@ std::vector<Pixel> stepped_circle(double radius) {
 }
 
 const std::vector<Pixel> square = {{0, 0}, {256, 0}, {256, 256}, {0, 256}};
-const std::vector<Pixel> horseshoe = {{0, 0},   {20, 0},  {20, 230},  {236, 230},
-                                      {236, 0}, {256, 0}, {256, 256}, {0, 256}};
 
 /// Points of the region at random; some on a grid, some on the contour and its vertices.
 std::vector<Vec2> features_in(const Region& region, std::size_t count, unsigned seed) {
@@ -164,7 +139,7 @@ std::string defect(const Region& region, std::span<const Vec2> features,
 }
 
 RC_GTEST_PROP(Triangulation, IsConstrainedDelaunay, ()) {
-  const Region region = make_region(star_contour(*rc::gen::inRange(3, 80), *rc::gen::arbitrary<unsigned>()));
+  const Region region = random_star(*rc::gen::inRange(3, 80), *rc::gen::arbitrary<unsigned>());
   const auto count = *rc::gen::element<std::size_t>(0, 1, 2, 5, 20);
   const std::vector<Vec2> features = features_in(region, count, *rc::gen::arbitrary<unsigned>());
   const FeatureGraph graph = build_feature_graph(region, features);
