@@ -138,6 +138,7 @@ Result<void> solve_geometry(const Model& model, SurfaceCache& surfaces, SolvedDe
   decal.times.add("places", watch.lap());
 
   SolveOptions options;
+  options.method = decal.job.method;
   options.energy = decal.job.energy;
   APPLIQUE_TRY(decal.map, of_decal(decal.job, solve_decal(entry->surface->mesh, input, options)));
   decal.features = std::move(input.features);

@@ -1,15 +1,17 @@
 #include "applique/decal.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <set>
 
 #include <fmt/format.h>
 
 #include "applique/base/parallel.h"
+#include "applique/base/stage_timer.h"
 #include "applique/decal_input.h"
+#include "applique/decal_warnings.h"
 #include "applique/embed/align.h"
+#include "applique/paper/paper_solver.h"
 #include "applique/patch/seed.h"
 #include "applique/warp/build_warp.h"
 
@@ -18,24 +20,7 @@ namespace {
 
 constexpr std::uint32_t cover_limit = 1;      // one sheet
 constexpr double linear_tolerance_px = 0.02;  // §5.1 of the design
-constexpr double most_coverage = 1.005;       // beyond it the map overlaps itself
 constexpr double least_coverage = 0.01;       // below it the result is of no use
-constexpr double high_stretch = 3;
-
-/// Adds the time until its end to a counter, in seconds.
-class StageTimer {
- public:
-  explicit StageTimer(double& total) : total_(total), start_(std::chrono::steady_clock::now()) {}
-  ~StageTimer() {
-    total_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
-  }
-  StageTimer(const StageTimer&) = delete;
-  StageTimer& operator=(const StageTimer&) = delete;
-
- private:
-  double& total_;
-  std::chrono::steady_clock::time_point start_;
-};
 
 /// The similarity that gives a lone feature's neighbourhood the wanted size and direction (§3.3 of the
 /// design).
@@ -327,47 +312,12 @@ class Solver {
   }
 
   void warn() {
+    map_.warnings = quality_warnings(input_.name, map_);
     const auto add = [&](const char* code, std::string message) {
       map_.warnings.push_back({code, fmt::format("decal '{}': {}", input_.name, message)});
     };
-    const double percent = 100 * map_.quality.coverage;
-    switch (map_.status) {
-      case Coverage::covered:
-        break;
-      case Coverage::clipped_by_boundary:
-        add("clipped_by_boundary",
-            fmt::format("the surface ends inside the region; {:.2f} % of it is shown", percent));
-        break;
-      case Coverage::clipped_by_cover:
-        add("clipped_by_cover",
-            fmt::format("the region meets itself on the surface; {:.2f} % of it is shown", percent));
-        break;
-      case Coverage::clipped_closed:
-        add("clipped_closed",
-            fmt::format("the region goes all the way round the surface; {:.2f} % of it is shown", percent));
-        break;
-      case Coverage::not_converged:
-        add("not_converged",
-            fmt::format("stopped after {} solves; {:.2f} % of the region is shown", map_.solves, percent));
-        break;
-    }
     if (rung_ == EmbeddingRung::circle)
       add("embedding_on_circle", "the conformal map folded; a flip-free one took its place");
-    if (map_.quality.flipped_plane + map_.quality.flipped_image > 0)
-      add("flipped_triangles", fmt::format("{} triangles are turned over in the embedding and {} in the "
-                                           "image; move the features nearer to "
-                                           "where the image wants them, or add some",
-                                           map_.quality.flipped_plane, map_.quality.flipped_image));
-    if (map_.quality.coverage > most_coverage)
-      add("overlapping_map",
-          fmt::format("parts of the region land on the surface more than once ({:.2f} % in all): the "
-                      "features pull the image over itself; check that none are swapped",
-                      percent));
-    if (map_.quality.l2_stretch > high_stretch)
-      add("high_stretch",
-          fmt::format("the image is stretched {:.1f} times as much as need be (L2); make it smaller for "
-                      "this part of the model, or pin it where it is torn",
-                      map_.quality.l2_stretch));
     for (const PairStress& stress : built_.stressed)
       add("feature_stress",
           fmt::format(
@@ -392,6 +342,7 @@ class Solver {
 
 Result<DecalMap> solve_decal(const SurfaceMesh& surface, const DecalInput& input,
                              const SolveOptions& options) {
+  if (options.method == Method::paper) return solve_decal_as_paper(surface, input, options);
   return Solver(surface, input, options).run();
 }
 

@@ -38,10 +38,14 @@ struct DecalInput {
   std::optional<LoneFrame> lone;  ///< Needed with one feature, ignored with more.
 };
 
+/// Who solves: the program's own solver, or the paper's algorithm (paper/paper_solver.h).
+enum class Method { applique, paper };
+
 struct SolveOptions {
-  Energy energy = Energy::isometric;
-  int max_solves = 60;          ///< Embeddings before giving up.
-  SolveTrace* trace = nullptr;  ///< Told what happened, when given.
+  Method method = Method::applique;
+  Energy energy = Energy::isometric;  ///< The paper's method is always conformal.
+  int max_solves = 60;                ///< Embeddings before giving up.
+  SolveTrace* trace = nullptr;        ///< Told what happened, when given.
 };
 
 /// Seconds by stage.
@@ -70,9 +74,10 @@ struct DecalMap {
   std::vector<Warning> warnings;
 };
 
-/// Solves one decal: "method": "applique" (§2 to §6 of the design). Cost follows the patch, not the surface.
-/// Errors, each naming the decal and the features: feature_outside_region, features_coincide, size_missing,
-/// features_disconnected, features_mirrored, not_solved.
+/// Solves one decal, by the method that the options name. "applique": §2 to §6 of the design; its cost
+/// follows the patch, not the surface. Errors, each naming the decal and the features:
+/// feature_outside_region, features_coincide, size_missing, features_disconnected, features_mirrored,
+/// not_solved.
 Result<DecalMap> solve_decal(const SurfaceMesh& surface, const DecalInput& input,
                              const SolveOptions& options = {});
 

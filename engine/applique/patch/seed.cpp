@@ -7,15 +7,6 @@
 namespace applique {
 namespace {
 
-/// The neighbour of v over a surface vertex, or v itself if it lies over it.
-PatchVertexId neighbour_over(const ImmersedDisc& disc, PatchVertexId v, VertexId target) {
-  if (disc.mesh_vertex(v) == target) return v;
-  for (PatchFaceId q : disc.fan(v))
-    for (PatchVertexId w : disc.faces()[q].vertices)
-      if (disc.mesh_vertex(w) == target) return w;
-  return {};
-}
-
 PatchVertexId any_vertex_over(const ImmersedDisc& disc, VertexId target) {
   for (PatchVertexId v : ids<PatchVertexId>(disc.vertex_count()))
     if (disc.alive(v) && disc.mesh_vertex(v) == target) return v;
@@ -38,7 +29,7 @@ PatchFaceId thicken_path(ImmersedDisc& disc, PatchFaceId start, std::span<const 
   for (std::size_t i = 0; i < path.size(); ++i) {
     at = disc.complete_fan(at, cover_limit);
     if (i + 1 == path.size()) break;
-    const PatchVertexId next = neighbour_over(disc, at, path[i + 1]);
+    const PatchVertexId next = disc.neighbour_over(at, path[i + 1]);
     at = next.valid() ? next : any_vertex_over(disc, path[i + 1]);
     APPLIQUE_ASSERT(at.valid());  // a face beside the path's edge is glued, or covered and so in the disc
   }
