@@ -14,6 +14,7 @@
 #include "applique/embed/align.h"
 #include "applique/paper/convex_graph.h"
 #include "applique/paper/face_regions.h"
+#include "applique/paper/feature_groups.h"
 #include "applique/paper/forward_warp.h"
 #include "applique/paper/graph_paths.h"
 #include "applique/paper/initial_map.h"
@@ -21,12 +22,12 @@
 #include "applique/paper/paper_seed.h"
 #include "applique/paper/patch_update.h"
 #include "applique/paper/region_walk.h"
-#include "applique/region/triangulation.h"
 
 namespace applique {
 namespace {
 
 constexpr int solves_per_allowed = 10;        // one strip each, where solve_decal adds many rings
+constexpr double longest_edge = 1.0 / 40;     // of the image's triangles; share of the region's diameter
 constexpr double smallest_lambda = 1.0 / 64;  // of the way to the final positions
 constexpr int most_rollbacks_in_vain = 3;     // in a row
 
@@ -112,9 +113,11 @@ class PaperSolver {
   /// What stays the same of the warp from one embedding to the next.
   void prepare_warp() {
     StageTimer stage(map_.times.warp);
-    triangulation_ = triangulate_region(input_.region, targets_);
-    warp_.from = targets_;
-    warp_.pairs = map_.graph.visible;
+    const FeatureGroups groups = group_features(input_.region, targets_, map_.graph);
+    area_ = spread_influence(input_.region, targets_, map_.graph, groups,
+                             longest_edge * input_.region.diameter());
+    region_.image = &area_.triangulation;
+    warp_ = {targets_, {}, map_.graph.visible, groups.count, groups.group};
     // The pins of the embedding: the two features that are furthest apart in the image.
     for (std::uint32_t i = 0; i < targets_.size(); ++i)
       for (std::uint32_t j = i + 1; j < targets_.size(); ++j)
@@ -128,7 +131,7 @@ class PaperSolver {
     for (const PatchFace& face : seed.disc.faces())
       sheets = std::max(sheets, seed.disc.cover(face.mesh_face));
     cover_limit_ = sheets;
-    PatchUpdate update(seed.disc, seed.features, cover_limit_);
+    PatchUpdate update(seed.disc, seed.features, input_.region, cover_limit_);
     std::optional<std::uint32_t> first = 0;
     int in_vain = 0;
     while (true) {
@@ -154,9 +157,9 @@ class PaperSolver {
       if (map_.solves >= solves_per_allowed * options_.max_solves) break;
 
       StageTimer stage(map_.times.grow);
-      const std::size_t removed = update.remove_outside(located_.inside);                     // (c), (d)
-      const std::size_t added = lambda == 1 ? update.add_strip(located_.inside, plane_)       // (e)
-                                            : update.widen_bridges(located_.inside, plane_);  // (f)
+      const std::size_t removed = update.remove_outside(located_);                     // (c), (d)
+      const std::size_t added = lambda == 1 ? update.add_strip(located_, plane_)       // (e)
+                                            : update.widen_bridges(located_, plane_);  // (f)
       if (lambda == 1 && removed + added == 0) break;
       update.compact(plane_);
 #ifdef APPLIQUE_CHECK_INVARIANTS
@@ -216,10 +219,9 @@ class PaperSolver {
     }
     {
       StageTimer stage(map_.times.warp);
-      region_.plane = warp_forward(warp_, triangulation_.points, influence_);
-      region_.image = &triangulation_;
+      region_.plane = warp_forward(warp_, area_.triangulation.points, area_.influence);
       for (std::size_t k = 0; k < targets_.size(); ++k)
-        region_.plane[triangulation_.features[k]] = warp_.to[k];
+        region_.plane[area_.triangulation.features[k]] = warp_.to[k];  // exactly
     }
     StageTimer stage(map_.times.grow);
     located_ = locate_patch(seed.disc, seed.features, plane_, region_, first);
@@ -301,8 +303,7 @@ class PaperSolver {
   std::vector<Vec2> targets_;  ///< Features in the image, plane units.
   std::vector<VertexFeature> features_;
   ConvexGraph graph_;
-  RegionTriangulation triangulation_;
-  std::vector<double> influence_;  ///< [point of the triangulation * groups + group]
+  InfluenceArea area_;
   std::array<std::uint32_t, 2> pins_ = {0, 0};
   std::uint32_t cover_limit_ = 1;
   ForwardWarp warp_;

@@ -4,16 +4,19 @@
 
 namespace applique {
 
-PatchUpdate::PatchUpdate(ImmersedDisc& disc, std::vector<PatchVertexId>& features, std::uint32_t cover_limit)
-    : disc_(disc), features_(features), cover_limit_(cover_limit) {
+PatchUpdate::PatchUpdate(ImmersedDisc& disc, std::vector<PatchVertexId>& features, const Region& region,
+                         std::uint32_t cover_limit)
+    : disc_(disc), features_(features), region_(region), cover_limit_(cover_limit) {
   for (PatchVertexId v : features_) disc_.pin(disc_.fan(v)[0]);
 }
 
-std::size_t PatchUpdate::remove_outside(const Inside& inside) {
+std::size_t PatchUpdate::remove_outside(const LocatedPatch& located) {
+  const auto& [inside, image, missed] = located;
   const auto unwanted = [&](PatchFaceId q) {
     const auto& v = disc_.faces()[q].vertices;
     return !inside[v[0]] && !inside[v[1]] && !inside[v[2]] &&
-           removed_[disc_.faces()[q].mesh_face] < cover_limit_;
+           removed_[disc_.faces()[q].mesh_face] < cover_limit_ &&
+           !region_.meets_triangle(image[v[0]], image[v[1]], image[v[2]]);
   };
   std::vector<PatchFaceId> work;
   for (PatchFaceId q : ids<PatchFaceId>(disc_.faces().size()))
@@ -32,31 +35,51 @@ std::size_t PatchUpdate::remove_outside(const Inside& inside) {
   return count;
 }
 
-std::size_t PatchUpdate::add_strip(const Inside& inside, std::vector<Vec2>& plane) {
+std::size_t PatchUpdate::add_strip(const LocatedPatch& located, std::vector<Vec2>& plane) {
+  const std::size_t faces = disc_.faces().size(), known = disc_.vertex_count();
   std::vector<PatchVertexId> boundary;
-  for (PatchVertexId v : ids<PatchVertexId>(inside.size()))
-    if (inside[v] && disc_.alive(v) && disc_.on_boundary(v)) boundary.push_back(v);
-  return complete_fans(boundary, plane);
+  for (PatchVertexId v : ids<PatchVertexId>(known))
+    if (located.inside[v] && disc_.alive(v) && disc_.on_boundary(v)) boundary.push_back(v);
+  std::vector<ImmersedDisc::Side> sides;
+  for (PatchFaceId q : ids<PatchFaceId>(faces)) {
+    if (!disc_.alive(q)) continue;
+    const PatchFace& face = disc_.faces()[q];
+    for (int k = 0; k < 3; ++k)
+      if (!face.neighbours[k].valid() && region_.meets_segment(located.image[face.vertices[(k + 1) % 3]],
+                                                               located.image[face.vertices[(k + 2) % 3]]))
+        sides.push_back({q, k});
+  }
+  complete_fans(boundary);
+  for (const auto& [q, k] : sides)
+    if (!disc_.faces()[q].neighbours[k].valid()) disc_.glue(q, k, cover_limit_);
+  place_new(known, plane);
+  return disc_.faces().size() - faces;
 }
 
-std::size_t PatchUpdate::widen_bridges(const Inside& inside, std::vector<Vec2>& plane) {
+std::size_t PatchUpdate::widen_bridges(const LocatedPatch& located, std::vector<Vec2>& plane) {
+  const std::size_t faces = disc_.faces().size(), known = disc_.vertex_count();
   std::vector<PatchVertexId> ends;
-  for (PatchFaceId q : ids<PatchFaceId>(disc_.faces().size())) {
+  for (PatchFaceId q : ids<PatchFaceId>(faces)) {
     if (!disc_.alive(q)) continue;
     const PatchFace& face = disc_.faces()[q];
     for (int k = 0; k < 3; ++k) {
       const PatchVertexId a = face.vertices[(k + 1) % 3], b = face.vertices[(k + 2) % 3];
       if (!face.neighbours[k].valid() || !disc_.on_boundary(a) || !disc_.on_boundary(b)) continue;
       for (PatchVertexId end : {a, b})
-        if (inside[end]) ends.push_back(end);
+        if (located.inside[end]) ends.push_back(end);
     }
   }
-  return complete_fans(ends, plane);
+  complete_fans(ends);
+  place_new(known, plane);
+  return disc_.faces().size() - faces;
 }
 
-std::size_t PatchUpdate::complete_fans(const std::vector<PatchVertexId>& vertices, std::vector<Vec2>& plane) {
-  const std::size_t faces = disc_.faces().size(), known = disc_.vertex_count();
+void PatchUpdate::complete_fans(const std::vector<PatchVertexId>& vertices) {
   for (PatchVertexId v : vertices) disc_.complete_fan(disc_.survivor(v), cover_limit_);
+}
+
+/// Gives a place to the vertices from number `known` on, and those that survived a merge the other's.
+void PatchUpdate::place_new(std::size_t known, std::vector<Vec2>& plane) const {
   plane.resize(disc_.vertex_count());
   std::vector<char> placed(disc_.vertex_count(), false);
   for (PatchVertexId v : ids<PatchVertexId>(known)) {
@@ -65,7 +88,6 @@ std::size_t PatchUpdate::complete_fans(const std::vector<PatchVertexId>& vertice
     placed[survivor.value] = true;
   }
   continue_map(disc_, placed, plane);
-  return disc_.faces().size() - faces;
 }
 
 void PatchUpdate::compact(std::vector<Vec2>& plane) {

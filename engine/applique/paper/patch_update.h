@@ -3,7 +3,8 @@
 #include <unordered_map>
 #include <vector>
 
-#include "applique/patch/immersed_disc.h"
+#include "applique/paper/region_walk.h"
+#include "applique/region/region.h"
 
 namespace applique {
 
@@ -15,24 +16,29 @@ namespace applique {
 /// than `cover_limit`, and none is removed again once it has been removed as often.
 class PatchUpdate {
  public:
-  PatchUpdate(ImmersedDisc& disc, std::vector<PatchVertexId>& features, std::uint32_t cover_limit);
+  PatchUpdate(ImmersedDisc& disc, std::vector<PatchVertexId>& features, const Region& region,
+              std::uint32_t cover_limit);
 
-  using Inside = IdVector<PatchVertexId, char>;
-  /// Steps (c) and (d) of Fig. 19: triangles with no corner in S. Returns how many.
-  std::size_t remove_outside(const Inside& inside);
-  /// Step (e), Fig. 17(a): a strip along the boundary, all triangles at its vertices in S. Returns how many.
-  std::size_t add_strip(const Inside& inside, std::vector<Vec2>& plane);
+  /// Steps (c) and (d) of Fig. 19: triangles with no corner in S. Those that meet the region all the same
+  /// stay: the paper would leave its corners uncovered where they are smaller than a triangle. Returns how
+  /// many.
+  std::size_t remove_outside(const LocatedPatch& located);
+  /// Step (e), Fig. 17(a): a strip along the boundary, all triangles at its vertices in S, and, as above,
+  /// those across an edge that meets the region. Returns how many.
+  std::size_t add_strip(const LocatedPatch& located, std::vector<Vec2>& plane);
   /// Step (f), Fig. 17(b): where an inner edge has both ends on the boundary, the triangles at its ends in S.
   /// Returns how many.
-  std::size_t widen_bridges(const Inside& inside, std::vector<Vec2>& plane);
+  std::size_t widen_bridges(const LocatedPatch& located, std::vector<Vec2>& plane);
   /// Drops dead ids; `plane` and the features follow.
   void compact(std::vector<Vec2>& plane);
 
  private:
-  std::size_t complete_fans(const std::vector<PatchVertexId>& vertices, std::vector<Vec2>& plane);
+  void complete_fans(const std::vector<PatchVertexId>& vertices);
+  void place_new(std::size_t known, std::vector<Vec2>& plane) const;
 
   ImmersedDisc& disc_;
   std::vector<PatchVertexId>& features_;
+  const Region& region_;
   std::uint32_t cover_limit_;
   std::unordered_map<FaceId, std::uint32_t> removed_;
 };

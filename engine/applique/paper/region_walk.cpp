@@ -27,7 +27,7 @@ class Walker {
       const int exit = exit_edge(at, came_from, from, to);
       if (exit < 0) return {at, true};
       const auto next = region_.image->neighbours[at][exit];
-      if (next == RegionTriangulation::none) return {at, false};
+      if (next == ImageTriangulation::none) return {at, false};
       came_from = at;
       at = next;
     }
@@ -72,7 +72,7 @@ class Walker {
 };
 
 /// By point of the triangulation that is a feature, the triangles round it.
-std::vector<std::vector<std::uint32_t>> triangles_at_features(const RegionTriangulation& region) {
+std::vector<std::vector<std::uint32_t>> triangles_at_features(const ImageTriangulation& region) {
   std::vector<std::vector<std::uint32_t>> found(region.features.size());
   for (std::uint32_t t = 0; t < region.triangles.size(); ++t)
     for (std::size_t k = 0; k < region.features.size(); ++k)

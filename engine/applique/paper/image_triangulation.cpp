@@ -1,4 +1,4 @@
-#include "applique/region/triangulation.h"
+#include "applique/paper/image_triangulation.h"
 
 #include <algorithm>
 #include <map>
@@ -9,30 +9,40 @@
 namespace applique {
 namespace {
 
-constexpr double longest_edge = 1.0 / 40;  // of the region's diameter
-constexpr std::uint32_t none = RegionTriangulation::none;
+constexpr std::uint32_t none = ImageTriangulation::none;
+constexpr double on_edge = 1e-12;  // plane units
 
 class Builder {
  public:
   explicit Builder(std::vector<Vec2> contour) { t_.points = std::move(contour); }
 
-  RegionTriangulation build(const std::vector<Vec2>& features, double longest) {
+  ImageTriangulation build(const std::vector<Vec2>& features, double longest) {
     cut_ears();
     link();
     for (Vec2 z : features) t_.features.push_back(insert(z));
     flip_all();
-    for (std::uint32_t i = 0; i < t_.triangles.size(); ++i)
-      while (length(i, longest_of(i)) > longest) bisect(i);
+    // By halves, and Delaunay again in between, for bisection alone keeps what slivers there are.
+    double length = 0;
+    for (std::uint32_t t = 0; t < t_.triangles.size(); ++t)
+      length = std::max(length, edge_length(t, longest_of(t)));
+    while (length > longest) {
+      length = std::max(0.5 * length, longest);
+      for (std::uint32_t t = 0; t < t_.triangles.size(); ++t)
+        while (edge_length(t, longest_of(t)) > length) bisect(t);
+      if (length > longest) flip_all();
+    }
     return std::move(t_);
   }
 
  private:
   [[nodiscard]] Vec2 at(std::uint32_t t, int k) const { return t_.points[t_.triangles[t][k % 3]]; }
-  [[nodiscard]] double length(std::uint32_t t, int k) const { return std::abs(at(t, k + 1) - at(t, k + 2)); }
+  [[nodiscard]] double edge_length(std::uint32_t t, int k) const {
+    return std::abs(at(t, k + 1) - at(t, k + 2));
+  }
   [[nodiscard]] int longest_of(std::uint32_t t) const {
     int longest = 0;
     for (int k = 1; k < 3; ++k)
-      if (length(t, k) > length(t, longest)) longest = k;
+      if (edge_length(t, k) > edge_length(t, longest)) longest = k;
     return longest;
   }
   [[nodiscard]] int edge_to(std::uint32_t t, std::uint32_t other) const {
@@ -125,7 +135,7 @@ class Builder {
     for (std::uint32_t t = 0; t < t_.triangles.size(); ++t) {
       double least = 1;
       for (int k = 0; k < 3; ++k)
-        least = std::min(least, cross(at(t, k + 2) - at(t, k + 1), z - at(t, k + 1)) / length(t, k));
+        least = std::min(least, cross(at(t, k + 2) - at(t, k + 1), z - at(t, k + 1)) / edge_length(t, k));
       if (least <= depth && t > 0) continue;
       depth = least;
       home = t;
@@ -133,11 +143,11 @@ class Builder {
     const auto v = static_cast<std::uint32_t>(t_.points.size());
     t_.points.push_back(z);
     for (int k = 0; k < 3; ++k)
-      if (cross(at(home, k + 2) - at(home, k + 1), z - at(home, k + 1)) < 1e-12) {
+      if (cross(at(home, k + 2) - at(home, k + 1), z - at(home, k + 1)) < on_edge * edge_length(home, k)) {
         split_edge(home, k, v);
         return v;
       }
-    // Split the first edge at z, as it were, and flip the empty triangle away: three triangles round z.
+    // Three triangles round z.
     const auto [a, b, c] = t_.triangles[home];
     const auto [na, nb, nc] = t_.neighbours[home];
     const auto first = static_cast<std::uint32_t>(t_.triangles.size()), second = first + 1;
@@ -184,7 +194,7 @@ class Builder {
     const int k = longest_of(t);
     while (true) {
       const std::uint32_t across = t_.neighbours[t][k];
-      if (across == none || length(across, longest_of(across)) <= length(t, k)) break;
+      if (across == none || edge_length(across, longest_of(across)) <= edge_length(t, k)) break;
       bisect(across);
     }
     const auto v = static_cast<std::uint32_t>(t_.points.size());
@@ -192,13 +202,14 @@ class Builder {
     split_edge(t, k, v);
   }
 
-  RegionTriangulation t_;
+  ImageTriangulation t_;
 };
 
 }  // namespace
 
-RegionTriangulation triangulate_region(const Region& region, const std::vector<Vec2>& features) {
-  return Builder(region.polygon()).build(features, longest_edge * region.diameter());
+ImageTriangulation triangulate_image(const Region& region, const std::vector<Vec2>& features,
+                                     double longest_edge) {
+  return Builder(region.polygon()).build(features, longest_edge);
 }
 
 }  // namespace applique
