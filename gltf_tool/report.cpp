@@ -79,6 +79,7 @@ Json decal_of(const SolvedDecal& decal, const std::optional<TexelDensity>& densi
   out["name"] = decal.job.name;
   out["image"] = decal.job.image.string();
   out["output"] = decal.job.output == DecalOutput::bake ? "bake" : "overlay";
+  out["method"] = decal.job.method == Method::paper ? "paper" : "applique";
   out["coverage_status"] = name_of(map.status);
   out["coverage"] = quality.coverage;
   out["area"] = quality.area;

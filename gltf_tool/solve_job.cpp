@@ -138,6 +138,7 @@ Result<void> solve_geometry(const Model& model, SurfaceCache& surfaces, SolvedDe
   decal.times.add("places", watch.lap());
 
   SolveOptions options;
+  options.method = decal.job.method;
   options.energy = decal.job.energy;
   options.overlap = decal.job.overlap;
   if (traced) options.trace = &decal.trace;

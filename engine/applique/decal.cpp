@@ -1,18 +1,18 @@
 #include "applique/decal.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <set>
-#include <unordered_map>
 
 #include <fmt/format.h>
 
 #include "applique/base/parallel.h"
+#include "applique/base/stage_timer.h"
 #include "applique/decal_input.h"
+#include "applique/decal_warnings.h"
 #include "applique/embed/align.h"
 #include "applique/embed/self_overlap.h"
-#include "applique/patch/depth.h"
+#include "applique/paper/paper_solver.h"
 #include "applique/patch/seed.h"
 #include "applique/patch/sheets.h"
 #include "applique/region/clusters.h"
@@ -25,9 +25,7 @@ namespace {
 constexpr std::uint32_t most_sheets = 16;
 constexpr double most_patch_area = 4;         // of a patch that may cover more, times the region's
 constexpr double linear_tolerance_px = 0.02;  // §5.1 of the design
-constexpr double most_coverage = 1.005;       // beyond it the map overlaps itself
 constexpr double least_coverage = 0.01;       // below it the result is of no use
-constexpr double high_stretch = 3;
 #ifdef APPLIQUE_CHECK_INVARIANTS
 constexpr bool always_check_patch = true;
 #else
@@ -36,21 +34,6 @@ constexpr bool always_check_patch = false;
 constexpr int trial_solves = 6;     // after them, groups stay
 constexpr int most_refreshes = 8;   // of the vertices' influence
 constexpr double refreshed = 1e-5;  // of the region's diameter: what a last refresh moves
-
-/// Adds the time until its end to a counter, in seconds.
-class StageTimer {
- public:
-  explicit StageTimer(double& total) : total_(total), start_(std::chrono::steady_clock::now()) {}
-  ~StageTimer() {
-    total_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
-  }
-  StageTimer(const StageTimer&) = delete;
-  StageTimer& operator=(const StageTimer&) = delete;
-
- private:
-  double& total_;
-  std::chrono::steady_clock::time_point start_;
-};
 
 /// The similarity that gives a lone feature's neighbourhood the wanted size and direction (§3.3 of the
 /// design).
@@ -431,20 +414,14 @@ class Solver {
     warn();
   }
 
-  /// Depths are asked for only where the patch lies over itself.
   void order_sheets(const Growth& growth) {
-    std::unordered_map<FaceId, std::uint32_t> cover;
-    for (const PatchFace& face : map_.patch.faces)
-      if (face.mesh_face.valid()) map_.sheets = std::max(map_.sheets, ++cover[face.mesh_face]);
-    map_.depth.resize(map_.patch.faces.size(), 0);
-    map_.sheet.resize(map_.patch.faces.size(), 0);
-    if (map_.sheets == 1) return;
     std::vector<DepthFeature> features;
     for (std::size_t k = 0; k < targets_.size(); ++k)
       features.push_back({targets_[k], growth.feature_faces()[k], input_.features[k].depth});
-    FaceDepths depths = spread_depths(map_.patch, map_.image, features, map_.graph.tree);
-    map_.sheet = rank_sheets(map_.patch, depths);
-    map_.depth = std::move(depths.depth);
+    SheetOrder order = applique::order_sheets(map_.patch, map_.image, features, map_.graph.tree);
+    map_.sheets = order.sheets;
+    map_.depth = std::move(order.depth);
+    map_.sheet = std::move(order.sheet);
   }
 
   /// A face is linear when the warp at its edges' middles and its centroid agrees with interpolation, and no
@@ -503,50 +480,12 @@ class Solver {
   }
 
   void warn() {
+    map_.warnings = quality_warnings(input_.name, map_, options_.overlap);
     const auto add = [&](const char* code, std::string message) {
       map_.warnings.push_back({code, fmt::format("decal '{}': {}", input_.name, message)});
     };
-    const double percent = 100 * map_.quality.coverage;
-    switch (map_.status) {
-      case Coverage::covered:
-        break;
-      case Coverage::clipped_by_boundary:
-        add("clipped_by_boundary",
-            fmt::format("the surface ends inside the region; {:.2f} % of it is shown", percent));
-        break;
-      case Coverage::clipped_by_cover:
-        add("clipped_by_cover",
-            fmt::format("the region meets itself on the surface; {:.2f} % of it is shown{}", percent,
-                        options_.overlap == Overlap::stop
-                            ? "; \"overlap\": \"allow\" on the decal lets it go on over itself"
-                            : ""));
-        break;
-      case Coverage::clipped_closed:
-        add("clipped_closed",
-            fmt::format("the region goes all the way round the surface; {:.2f} % of it is shown", percent));
-        break;
-      case Coverage::not_converged:
-        add("not_converged",
-            fmt::format("stopped after {} solves; {:.2f} % of the region is shown", map_.solves, percent));
-        break;
-    }
     if (rung_ == EmbeddingRung::circle)
       add("embedding_on_circle", "the conformal map folded; a flip-free one took its place");
-    if (map_.quality.flipped_plane + map_.quality.flipped_image > 0)
-      add("flipped_triangles", fmt::format("{} triangles are turned over in the embedding and {} in the "
-                                           "image; move the features nearer to "
-                                           "where the image wants them, or add some",
-                                           map_.quality.flipped_plane, map_.quality.flipped_image));
-    if (map_.quality.coverage > most_coverage)
-      add("overlapping_map",
-          fmt::format("parts of the region land on the surface more than once ({:.2f} % in all): the "
-                      "features pull the image over itself; check that none are swapped",
-                      percent));
-    if (map_.quality.l2_stretch > high_stretch)
-      add("high_stretch",
-          fmt::format("the image is stretched {:.1f} times as much as need be (L2); make it smaller for "
-                      "this part of the model, or pin it where it is torn",
-                      map_.quality.l2_stretch));
     for (const PairStress& stress : built_.stressed)
       add("feature_stress",
           fmt::format(
@@ -585,6 +524,7 @@ std::vector<double> DecalMap::influence_at(const std::array<PatchVertexId, 3>& c
 
 Result<DecalMap> solve_decal(const SurfaceMesh& surface, const DecalInput& input,
                              const SolveOptions& options) {
+  if (options.method == Method::paper) return solve_decal_as_paper(surface, input, options);
   return Solver(surface, input, options).run();
 }
 

@@ -40,6 +40,9 @@ struct DecalInput {
   std::optional<LoneFrame> lone;  ///< Needed with one feature, ignored with more.
 };
 
+/// Who solves: the program's own solver, or the paper's algorithm (paper/paper_solver.h).
+enum class Method { applique, paper };
+
 /// Whether the image may lie over itself on the surface more often than the paths between the features do.
 enum class Overlap {
   stop,   ///< Where the image would meet itself it ends, along a seam of contact.
@@ -47,7 +50,8 @@ enum class Overlap {
 };
 
 struct SolveOptions {
-  Energy energy = Energy::isometric;
+  Method method = Method::applique;
+  Energy energy = Energy::isometric;  ///< The paper's method is always conformal.
   Overlap overlap = Overlap::stop;
   int max_solves = 60;          ///< Embeddings before giving up.
   SolveTrace* trace = nullptr;  ///< Told what happened, when given.
@@ -89,9 +93,10 @@ struct DecalMap {
                                                  const std::array<double, 3>& barycentric) const;
 };
 
-/// Solves one decal: "method": "applique" (§2 to §6 of the design). Cost follows the patch, not the surface.
-/// Errors, each naming the decal and the features: feature_outside_region, features_coincide, size_missing,
-/// features_disconnected, features_mirrored, not_solved.
+/// Solves one decal, by the method that the options name. "applique": §2 to §6 of the design; its cost
+/// follows the patch, not the surface. Errors, each naming the decal and the features:
+/// feature_outside_region, features_coincide, size_missing, features_disconnected, features_mirrored,
+/// not_solved.
 Result<DecalMap> solve_decal(const SurfaceMesh& surface, const DecalInput& input,
                              const SolveOptions& options = {});
 

@@ -80,11 +80,11 @@ Region random_region(std::mt19937& random) {
 
 DecalInput random_decal(const Ground& ground, std::mt19937& random) {
   DecalInput input{"random", random_region(random), {}, {}};
+  // Seen from a random side, as a person would pick the places: what a ray meets first.
   const SurfaceMesh& mesh = *ground.mesh;
-  const FaceId face(random() % mesh.faces.size());
-  const auto corners = mesh.corners(face);
-  const Vec3 origin = (corners[0] + corners[1] + corners[2]) / 3;
+  const auto corners = mesh.corners(FaceId(random() % mesh.faces.size()));
   const Vec3 normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]).normalized();
+  const Vec3 eye = (corners[0] + corners[1] + corners[2]) / 3 + 4 * ground.size * normal;
   const double turn = uniform(random, 0, 2 * std::numbers::pi);
   const Vec3 x = Eigen::AngleAxisd(turn, normal) * normal.unitOrthogonal(), y = normal.cross(x);
   const double width = ground.size * uniform(random, 0.2, 1), pull = 0.04 * width * uniform(random, 0, 1);
@@ -99,8 +99,10 @@ DecalInput random_decal(const Ground& ground, std::mt19937& random) {
     if (std::any_of(places.begin(), places.end(), [&](Vec2 other) { return std::abs(other - z) < apart; }))
       continue;
     const Vec2 at = 0.5 * width * z + pull * Vec2(uniform(random, -1, 1), uniform(random, -1, 1));
+    const auto place = ground.query->first_hit(eye + at.real() * x + at.imag() * y, -normal);
+    if (!place) continue;
     places.push_back(z);
-    input.features.push_back({pixel, ground.query->nearest(origin + at.real() * x + at.imag() * y), 0});
+    input.features.push_back({pixel, *place, 0});
   }
   return input;
 }

@@ -88,6 +88,14 @@ std::vector<PatchFaceId> ImmersedDisc::fan(PatchVertexId v) const {
   return fan;
 }
 
+PatchVertexId ImmersedDisc::neighbour_over(PatchVertexId v, VertexId target) const {
+  if (mesh_vertex(v) == target) return v;
+  for (PatchFaceId q : fan(v))
+    for (PatchVertexId w : faces_[q].vertices)
+      if (mesh_vertex(w) == target) return w;
+  return {};
+}
+
 ImmersedDisc::GlueResult ImmersedDisc::glue(PatchFaceId q, int k, std::uint32_t cover_limit) {
   APPLIQUE_ASSERT(alive(q) && !faces_[q].neighbours[k].valid());
   const FaceId g = surface_->neighbour(faces_[q].mesh_face, k);

@@ -93,6 +93,8 @@ class ImmersedDisc {
   /// The faces round v, counter-clockwise; from the boundary when v lies on it.
   [[nodiscard]] std::vector<PatchFaceId> fan(PatchVertexId v) const;
   [[nodiscard]] int corner(PatchFaceId q, PatchVertexId v) const;
+  /// The neighbour of v over a surface vertex, or v itself if it lies over it; invalid when there is none.
+  [[nodiscard]] PatchVertexId neighbour_over(PatchVertexId v, VertexId target) const;
 
   /// What is wrong, or an empty string. O(size); for tests and debug builds.
   [[nodiscard]] std::string broken_invariant() const;

@@ -122,7 +122,7 @@ class Thickening {
       at = disc_.complete_fan(at, [&](FaceId f) { return limit(f); });
       place_new_vertices(strand.image[i]);
       if (i + 1 == strand.path.size()) break;
-      const PatchVertexId next = neighbour_over(at, strand.path[i + 1]);
+      const PatchVertexId next = disc_.neighbour_over(at, strand.path[i + 1]);
       at = next.valid() ? next : vertex_over(strand.path[i + 1], strand.image[i + 1]);
       APPLIQUE_ASSERT(at.valid());  // a face beside the path's edge is glued, or covered and so in the disc
     }
@@ -165,13 +165,6 @@ class Thickening {
   }
 
   void place_new_vertices(Vec2 image) { image_.resize(disc_.vertex_count(), image); }
-
-  [[nodiscard]] PatchVertexId neighbour_over(PatchVertexId v, VertexId target) const {
-    for (PatchFaceId q : disc_.fan(v))
-      for (PatchVertexId w : disc_.faces()[q].vertices)
-        if (disc_.mesh_vertex(w) == target) return w;
-    return {};
-  }
 
   /// The vertex over `target` that is nearest in the image.
   [[nodiscard]] PatchVertexId vertex_over(VertexId target, Vec2 image) const {

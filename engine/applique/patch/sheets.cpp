@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <tuple>
+#include <unordered_map>
+#include <utility>
 #include <vector>
 
 namespace applique {
@@ -19,6 +21,21 @@ IdVector<PatchFaceId, std::uint32_t> rank_sheets(const Patch& patch, const FaceD
     if (patch.faces[order[i]].mesh_face == patch.faces[order[i - 1]].mesh_face)
       sheet[order[i]] = sheet[order[i - 1]] + 1;
   return sheet;
+}
+
+SheetOrder order_sheets(const Patch& patch, const IdVector<PatchVertexId, Vec2>& image,
+                        std::span<const DepthFeature> features, std::span<const FeaturePair> tree) {
+  SheetOrder order;
+  std::unordered_map<FaceId, std::uint32_t> cover;
+  for (const PatchFace& face : patch.faces)
+    if (face.mesh_face.valid()) order.sheets = std::max(order.sheets, ++cover[face.mesh_face]);
+  order.depth.resize(patch.faces.size(), 0);
+  order.sheet.resize(patch.faces.size(), 0);
+  if (order.sheets == 1) return order;
+  FaceDepths depths = spread_depths(patch, image, features, tree);
+  order.sheet = rank_sheets(patch, depths);
+  order.depth = std::move(depths.depth);
+  return order;
 }
 
 }  // namespace applique

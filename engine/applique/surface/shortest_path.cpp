@@ -23,13 +23,14 @@ struct Reached {
 
 }  // namespace
 
-std::vector<VertexId> shortest_path(const SurfaceMesh& mesh, const SurfacePoint& from,
-                                    const SurfacePoint& to) {
+std::vector<VertexId> shortest_path(const SurfaceMesh& mesh, const SurfacePoint& from, const SurfacePoint& to,
+                                    const std::unordered_set<VertexId>& blocked) {
   if (mesh.component[mesh.faces[from.face][0]] != mesh.component[mesh.faces[to.face][0]]) return {};
   const Vec3 start = position_of(mesh, from), goal = position_of(mesh, to);
   std::unordered_map<VertexId, Reached> reached;
   std::priority_queue<Candidate, std::vector<Candidate>, std::greater<>> queue;
   const auto reach = [&](VertexId v, VertexId previous, double distance) {
+    if (blocked.contains(v)) return;
     const auto [entry, is_new] = reached.try_emplace(v, Reached{distance, previous});
     if (!is_new) {
       if (entry->second.settled || entry->second.distance <= distance) return;

@@ -22,7 +22,8 @@ struct FeatureGroups {
   }
 };
 
-/// The groups of a field of influence, and which of them meet in it. `group` by feature, as the field has them.
+/// The groups of a field of influence, and which of them meet in it. `group` by feature, as the field has
+/// them.
 FeatureGroups groups_of(const InfluenceField& field, std::vector<std::uint32_t> group);
 
 /// Whether the planar graph does not stay planar when its features are where the embedding has them: two
