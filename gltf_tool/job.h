@@ -50,7 +50,9 @@ struct DecalJob {
   BlendMode blend = BlendMode::normal;
   DecalOutput output = DecalOutput::bake;
   std::optional<double> offset;  ///< Of an overlay, scene units, >= 0; left out: default_offset().
+  Method method = Method::applique;
   Energy energy = Energy::isometric;
+  Overlap overlap = Overlap::stop;
 };
 
 /// A job file, version 1.

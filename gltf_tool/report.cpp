@@ -79,13 +79,16 @@ Json decal_of(const SolvedDecal& decal, const std::optional<TexelDensity>& densi
   out["name"] = decal.job.name;
   out["image"] = decal.job.image.string();
   out["output"] = decal.job.output == DecalOutput::bake ? "bake" : "overlay";
+  out["method"] = decal.job.method == Method::paper ? "paper" : "applique";
   out["coverage_status"] = name_of(map.status);
   out["coverage"] = quality.coverage;
   out["area"] = quality.area;
   out["patch"] = {{"triangles", map.patch.faces.size()},
                   {"textured_triangles", textured},
                   {"vertices", map.patch.vertices.size()},
-                  {"iterations", map.solves}};
+                  {"iterations", map.solves},
+                  {"sheets", map.sheets},
+                  {"groups", map.groups}};
   out["features"] = features_of(decal);
   out["flipped"] = {{"embedding", quality.flipped_plane}, {"image", quality.flipped_image}};
   out["stretch"] = {{"l2", finite(quality.l2_stretch)}, {"linf", finite(quality.linf_stretch)}};

@@ -63,7 +63,7 @@ TEST_F(JobTest, ReadsEveryField) {
           { "image": [9, 1], "ray": { "origin": [0, 0, 5], "direction": [0, 0, -1] } } ],
         "nodes": ["Body", 2], "materials": [0], "size": 1.5, "up": [0, 1, 0],
         "opacity": 0.25, "blend": "multiply", "output": "overlay", "offset": 0.01,
-        "method": "applique", "energy": "conformal" },
+        "method": "paper", "energy": "conformal" },
       { "name": "b", "image": "/elsewhere/b.png", "region": { "alpha": 0.25 },
         "features": [ { "image": [1, 2], "position": [1, 2, 3] } ] },
       { "name": "c", "image": "c.png", "region": { "rectangle": true },
@@ -94,6 +94,7 @@ TEST_F(JobTest, ReadsEveryField) {
   EXPECT_EQ(a.blend, BlendMode::multiply);
   EXPECT_EQ(a.output, DecalOutput::overlay);
   EXPECT_EQ(a.offset, 0.01);
+  EXPECT_EQ(a.method, Method::paper);
   EXPECT_EQ(a.energy, Energy::conformal);
 
   EXPECT_EQ(job->decals[1].image, "/elsewhere/b.png");
@@ -111,6 +112,7 @@ TEST_F(JobTest, LeavesOutWhatMayBeLeftOut) {
   EXPECT_EQ(decal.opacity, 1);
   EXPECT_EQ(decal.blend, BlendMode::normal);
   EXPECT_EQ(decal.output, DecalOutput::bake);
+  EXPECT_EQ(decal.method, Method::applique);
   EXPECT_EQ(decal.energy, Energy::isometric);
 }
 

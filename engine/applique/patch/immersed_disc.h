@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 #include <unordered_map>
@@ -46,6 +47,8 @@ class ImmersedDisc {
   /// Glues faces round vertex v until its fan is closed or nothing more can be glued. Returns v, or the
   /// vertex that it was merged into.
   PatchVertexId complete_fan(PatchVertexId v, std::uint32_t cover_limit);
+  /// With a limit for each surface face.
+  PatchVertexId complete_fan(PatchVertexId v, const std::function<std::uint32_t(FaceId)>& cover_limit);
 
   /// A boundary edge at v, as the face and the edge to glue across; nothing when v is interior.
   struct Side {
@@ -90,6 +93,8 @@ class ImmersedDisc {
   /// The faces round v, counter-clockwise; from the boundary when v lies on it.
   [[nodiscard]] std::vector<PatchFaceId> fan(PatchVertexId v) const;
   [[nodiscard]] int corner(PatchFaceId q, PatchVertexId v) const;
+  /// The neighbour of v over a surface vertex, or v itself if it lies over it; invalid when there is none.
+  [[nodiscard]] PatchVertexId neighbour_over(PatchVertexId v, VertexId target) const;
 
   /// What is wrong, or an empty string. O(size); for tests and debug builds.
   [[nodiscard]] std::string broken_invariant() const;

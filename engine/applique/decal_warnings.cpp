@@ -1,0 +1,60 @@
+#include "applique/decal_warnings.h"
+
+#include <fmt/format.h>
+
+namespace applique {
+namespace {
+
+constexpr double most_coverage = 1.005;  // beyond it the map overlaps itself
+constexpr double high_stretch = 3;
+
+}  // namespace
+
+std::vector<Warning> quality_warnings(const std::string& name, const DecalMap& map, Overlap overlap) {
+  std::vector<Warning> warnings;
+  const auto add = [&](const char* code, std::string message) {
+    warnings.push_back({code, fmt::format("decal '{}': {}", name, message)});
+  };
+  const double percent = 100 * map.quality.coverage;
+  switch (map.status) {
+    case Coverage::covered:
+      break;
+    case Coverage::clipped_by_boundary:
+      add("clipped_by_boundary",
+          fmt::format("the surface ends inside the region; {:.2f} % of it is shown", percent));
+      break;
+    case Coverage::clipped_by_cover:
+      add("clipped_by_cover",
+          fmt::format("the region meets itself on the surface; {:.2f} % of it is shown{}", percent,
+                      overlap == Overlap::stop
+                          ? "; \"overlap\": \"allow\" on the decal lets it go on over itself"
+                          : ""));
+      break;
+    case Coverage::clipped_closed:
+      add("clipped_closed",
+          fmt::format("the region goes all the way round the surface; {:.2f} % of it is shown", percent));
+      break;
+    case Coverage::not_converged:
+      add("not_converged",
+          fmt::format("stopped after {} solves; {:.2f} % of the region is shown", map.solves, percent));
+      break;
+  }
+  if (map.quality.flipped_plane + map.quality.flipped_image > 0)
+    add("flipped_triangles", fmt::format("{} triangles are turned over in the embedding and {} in the "
+                                         "image; move the features nearer to "
+                                         "where the image wants them, or add some",
+                                         map.quality.flipped_plane, map.quality.flipped_image));
+  if (map.quality.coverage > most_coverage)
+    add("overlapping_map",
+        fmt::format("parts of the region land on the surface more than once ({:.2f} % in all): the "
+                    "features pull the image over itself; check that none are swapped",
+                    percent));
+  if (map.quality.l2_stretch > high_stretch)
+    add("high_stretch",
+        fmt::format("the image is stretched {:.1f} times as much as need be (L2); make it smaller for "
+                    "this part of the model, or pin it where it is torn",
+                    map.quality.l2_stretch));
+  return warnings;
+}
+
+}  // namespace applique
