@@ -288,9 +288,9 @@ class Solver {
       const std::size_t peeled = energy == Energy::conformal && !padded ? growth.peel(points_, inside) : 0;
       const std::size_t added =
           growth.grow(points_, inside, scale_, {}) + growth.fill_pockets(points_, inside, scale_);
-      // What is still to come of a patch that hardly changes, the margin brings as well; but where it may go
-      // on over itself, what stops it shows at the very end.
-      const bool exactly = padded || options_.overlap == Overlap::allow;
+      // What is still to come of a patch that hardly changes, the margin brings as well; but where the patch
+      // lies over itself, or may come to, each face counts.
+      const bool exactly = padded || groups_.count > 1 || options_.overlap == Overlap::allow;
       const double settled = exactly ? 0 : few_changes * static_cast<double>(disc.faces().size());
       if (static_cast<double>(added + peeled) <= settled) {
         // Thin patches mislead: what they say of the features' order counts once the patch is grown.
