@@ -1,11 +1,14 @@
 #include <cmath>
 #include <numbers>
 
-#include "draw.h"
+#include "applique/image/draw.h"
+
 #include "images.h"
 
 namespace applique::assets {
 namespace {
+
+using namespace draw;
 
 constexpr double axis = 384;  // the emblem's middle
 const Rgba navy{0.06, 0.13, 0.30};

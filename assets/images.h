@@ -3,7 +3,7 @@
 #include "applique/base/types.h"
 #include "applique/image/image.h"
 
-/// The demo's images, drawn with draw.h: RGBA, straight alpha.
+/// The demo's images, drawn with applique/image/draw.h: RGBA, straight alpha.
 namespace applique::assets {
 
 /// A harlequin mask for a face, 1024 x 1024, transparent around its outline and in the eyes.

@@ -2,11 +2,14 @@
 #include <map>
 #include <numbers>
 
-#include "draw.h"
+#include "applique/image/draw.h"
+
 #include "images.h"
 
 namespace applique::assets {
 namespace {
+
+using namespace draw;
 
 const Rgba paper{0.955, 0.915, 0.82};
 const Rgba green{0.06, 0.24, 0.18};

@@ -1,11 +1,14 @@
 #include <cmath>
 #include <numbers>
 
-#include "draw.h"
+#include "applique/image/draw.h"
+
 #include "images.h"
 
 namespace applique::assets {
 namespace {
+
+using namespace draw;
 
 constexpr double axis = 512;  // the mask's middle
 const Rgba ivory{0.96, 0.91, 0.82};

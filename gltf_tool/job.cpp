@@ -87,6 +87,7 @@ DecalJob decal_of(const json& decal, const std::filesystem::path& folder) {
   if (decal.contains("offset")) out.offset = decal["offset"].get<double>();
   out.method = decal.value("method", "applique") == "paper" ? Method::paper : Method::applique;
   out.energy = decal.value("energy", "isometric") == "conformal" ? Energy::conformal : Energy::isometric;
+  out.overlap = decal.value("overlap", "stop") == "allow" ? Overlap::allow : Overlap::stop;
   return out;
 }
 

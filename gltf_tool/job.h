@@ -52,6 +52,7 @@ struct DecalJob {
   std::optional<double> offset;  ///< Of an overlay, scene units, >= 0; left out: default_offset().
   Method method = Method::applique;
   Energy energy = Energy::isometric;
+  Overlap overlap = Overlap::stop;
 };
 
 /// A job file, version 1.

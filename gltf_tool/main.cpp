@@ -8,6 +8,7 @@
 #include "commands/bake.h"
 #include "commands/check.h"
 #include "commands/common.h"
+#include "commands/explain.h"
 #include "commands/inspect.h"
 #include "commands/render.h"
 #include "output_file.h"
@@ -20,6 +21,7 @@ constexpr int wrong_usage = 1;
 constexpr const char* epilogue = R"(Examples:
   applique bake job.json -o out.glb --preview preview.png --report report.json
   applique check job.json
+  applique explain job.json --stage growth -o growth.png
   applique inspect model.glb
   applique render out.glb -o picture.png --azimuth 30
 
@@ -54,10 +56,12 @@ int main(int argc, char** argv) {
 
   applique::BakeArguments bake;
   applique::CheckArguments check;
+  applique::ExplainArguments explain;
   applique::InspectArguments inspect;
   applique::RenderArguments render;
   const CLI::App* bake_command = applique::add_bake_command(app, bake);
   const CLI::App* check_command = applique::add_check_command(app, check);
+  const CLI::App* explain_command = applique::add_explain_command(app, explain);
   const CLI::App* inspect_command = applique::add_inspect_command(app, inspect);
   applique::add_render_command(app, render);
   try {
@@ -70,6 +74,7 @@ int main(int argc, char** argv) {
   applique::remove_temporary_on_interrupt();
   const applique::Result<void> done = bake_command->parsed()      ? applique::run_bake(bake, common)
                                       : check_command->parsed()   ? applique::run_check(check, common)
+                                      : explain_command->parsed() ? applique::run_explain(explain, common)
                                       : inspect_command->parsed() ? applique::run_inspect(inspect, common)
                                                                   : applique::run_render(render, common);
   if (done) return 0;

@@ -115,7 +115,7 @@ Result<std::optional<LoneFrame>> find_lone_frame(const DecalJob& decal, std::vec
                        "edge)"));
 }
 
-Result<void> solve_geometry(const Model& model, SurfaceCache& surfaces, SolvedDecal& decal) {
+Result<void> solve_geometry(const Model& model, SurfaceCache& surfaces, SolvedDecal& decal, bool traced) {
   const std::string& name = decal.job.name;
   Stopwatch watch;
   APPLIQUE_TRY(decal.region, of_decal(decal.job, find_region(decal.job.region, decal.image)));
@@ -140,6 +140,8 @@ Result<void> solve_geometry(const Model& model, SurfaceCache& surfaces, SolvedDe
   SolveOptions options;
   options.method = decal.job.method;
   options.energy = decal.job.energy;
+  options.overlap = decal.job.overlap;
+  if (traced) options.trace = &decal.trace;
   APPLIQUE_TRY(decal.map, of_decal(decal.job, solve_decal(entry->surface->mesh, input, options)));
   decal.features = std::move(input.features);
   decal.times.add("solve", watch.lap());
@@ -178,7 +180,7 @@ Result<std::vector<std::size_t>> resolve_references(const std::vector<Reference>
   return found;
 }
 
-Result<SolvedJob> solve_job(const Job& job, const StageCallback& on_stage) {
+Result<SolvedJob> solve_job(const Job& job, const StageCallback& on_stage, bool traced) {
   const auto begin_stage = [&](const std::string& stage, double done) {
     if (on_stage) on_stage(stage, done);
   };
@@ -204,7 +206,7 @@ Result<SolvedJob> solve_job(const Job& job, const StageCallback& on_stage) {
     decal.times.add("load_image", loaded.seconds);
     solved.times.add("load_images", watch.lap());  // what was waited for
     APPLIQUE_TRY(decal.image, of_decal(decal_job, std::move(loaded.image)));
-    APPLIQUE_CHECK(solve_geometry(solved.model, surfaces, decal));
+    APPLIQUE_CHECK(solve_geometry(solved.model, surfaces, decal, traced));
     decal.warnings.insert(decal.warnings.end(), decal.map.warnings.begin(), decal.map.warnings.end());
     solved.decals.push_back(std::move(decal));
     solved.times.add("solve", watch.lap());

@@ -25,6 +25,7 @@ struct SolvedDecal {
   Region region;
   std::vector<Feature> features;
   DecalMap map;
+  SolveTrace trace;  ///< Empty unless it was asked for.
   StageTimes times;
   std::vector<Warning> warnings;
 };
@@ -40,11 +41,11 @@ struct SolvedJob {
 using StageCallback = std::function<void(const std::string& stage, double done)>;
 
 /// The geometry of a job, which `bake` and `check` share: loads the model and the images, cuts out the
-/// regions, puts the features on the surface and solves the decals one after another. Errors: those of
-/// load_model, read_image, alpha_outline, Region::from_contour, resolve_place and solve_decal, each naming
-/// the decal; feature_place_invalid for a node or material that the model does not have (names the near
-/// ones); size_missing.
-Result<SolvedJob> solve_job(const Job& job, const StageCallback& on_stage = {});
+/// regions, puts the features on the surface and solves the decals one after another, with a trace if wanted.
+/// Errors: those of load_model, read_image, alpha_outline, Region::from_contour, resolve_place and
+/// solve_decal, each naming the decal; feature_place_invalid for a node or material that the model does not
+/// have (names the near ones); size_missing.
+Result<SolvedJob> solve_job(const Job& job, const StageCallback& on_stage = {}, bool traced = false);
 
 /// The indices of the elements of `array` ("nodes", "materials") that the references name; a name may stand
 /// for several. `owner` begins the sentence of an error. Errors: feature_place_invalid.

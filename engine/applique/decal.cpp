@@ -11,16 +11,29 @@
 #include "applique/decal_input.h"
 #include "applique/decal_warnings.h"
 #include "applique/embed/align.h"
+#include "applique/embed/self_overlap.h"
 #include "applique/paper/paper_solver.h"
 #include "applique/patch/seed.h"
+#include "applique/patch/sheets.h"
+#include "applique/region/clusters.h"
+#include "applique/region/influence.h"
 #include "applique/warp/build_warp.h"
 
 namespace applique {
 namespace {
 
-constexpr std::uint32_t cover_limit = 1;      // one sheet
+constexpr std::uint32_t most_sheets = 16;
+constexpr double most_patch_area = 4;         // of a patch that may cover more, times the region's
 constexpr double linear_tolerance_px = 0.02;  // §5.1 of the design
 constexpr double least_coverage = 0.01;       // below it the result is of no use
+#ifdef APPLIQUE_CHECK_INVARIANTS
+constexpr bool always_check_patch = true;
+#else
+constexpr bool always_check_patch = false;
+#endif
+constexpr int trial_solves = 6;     // after them, groups stay
+constexpr int most_refreshes = 8;   // of the vertices' influence
+constexpr double refreshed = 1e-5;  // of the region's diameter: what a last refresh moves
 
 /// The similarity that gives a lone feature's neighbourhood the wanted size and direction (§3.3 of the
 /// design).
@@ -68,14 +81,18 @@ Result<Similarity> lone_alignment(const SurfaceMesh& surface, const DecalInput& 
   return Similarity{scale, target - scale * feature};
 }
 
-/// The warp at many places, on all cores.
-std::vector<Vec2> warp_all(const Warp& warp, const std::vector<Vec2>& places) {
+/// The warp at many places, on all cores; `influence` by place and group.
+std::vector<Vec2> warp_all(const Warp& warp, const std::vector<Vec2>& places,
+                           const std::vector<double>& influence) {
   if (warp.steps == 0) return places;
   constexpr std::size_t batch = 256;
+  const std::size_t groups = warp.groups;
   std::vector<Vec2> warped(places.size());
   parallel_for(static_cast<int>((places.size() + batch - 1) / batch), [&](int i) {
     const std::size_t first = batch * static_cast<std::size_t>(i);
-    for (std::size_t k = first; k < std::min(first + batch, places.size()); ++k) warped[k] = warp(places[k]);
+    for (std::size_t k = first; k < std::min(first + batch, places.size()); ++k)
+      warped[k] =
+          groups == 1 ? warp(places[k]) : warp(places[k], std::span(influence).subspan(k * groups, groups));
   });
   return warped;
 }
@@ -101,13 +118,14 @@ class Solver {
 
  private:
   Result<void> solve() {
-    APPLIQUE_CHECK(check_input(surface_, input_, targets_));
+    APPLIQUE_CHECK(check_input(surface_, input_, targets_, options_.overlap));
     {
       StageTimer stage(map_.times.graph);
       map_.graph = build_feature_graph(input_.region, targets_);
     }
     APPLIQUE_TRY(Seed seed, make_seed());
-    Growth growth(seed.disc, std::move(seed.feature_faces), input_.region, cover_limit);
+    for (const Vec2 z : seed.image) points_.push_back({Vec2(), z});
+    Growth growth(seed.disc, std::move(seed.feature_faces), input_.region, seed.sheets);
     APPLIQUE_CHECK(grow(seed.disc, growth));
     finish(seed.disc, growth);
     if (map_.quality.coverage < least_coverage)
@@ -122,9 +140,11 @@ class Solver {
 
   Result<Seed> make_seed() {
     StageTimer stage(map_.times.seed);
-    std::vector<SurfacePoint> places;
-    for (const Feature& feature : input_.features) places.push_back(feature.surface);
-    auto seed = build_seed(bridged_, places, map_.graph.tree, cover_limit);
+    std::vector<SeedFeature> features;
+    for (std::size_t k = 0; k < targets_.size(); ++k)
+      features.push_back({input_.features[k].surface, targets_[k]});
+    auto seed = build_seed(bridged_, features, map_.graph.tree);
+    if (seed && options_.trace != nullptr) options_.trace->paths = seed->paths;
     if (seed) return std::move(*seed);
     const auto [i, j] = seed.error().disconnected;
     return fail(ErrorCode::features_disconnected,
@@ -148,13 +168,13 @@ class Solver {
       plane = std::move(embedding.plane);
       for (std::size_t k = 0; k < features.size(); ++k)
         features[k] = interpolate(disc, growth.feature_faces()[k], input_.features[k].surface, plane);
+      for (std::size_t v = 0; v < plane.size(); ++v) points_[PatchVertexId(v)].plane = plane[v];
+      choose_groups(disc, features);
       APPLIQUE_CHECK(align(disc, growth, features, plane));
     }
     StageTimer stage(map_.times.warp);
-    built_ = build_warp(features, targets_, map_.graph, probes(features));
-    points_.clear();
-    const std::vector<Vec2> image = warp_all(built_.warp, plane);
-    for (std::size_t v = 0; v < plane.size(); ++v) points_.push_back({plane[v], image[v]});
+    for (std::size_t v = 0; v < plane.size(); ++v) points_[PatchVertexId(v)].plane = plane[v];
+    warp_points(plane, features);
     return {};
   }
 
@@ -165,20 +185,61 @@ class Solver {
       APPLIQUE_TRY(similarity, lone_alignment(surface_, input_, disc, growth.feature_faces()[0], features[0],
                                               targets_[0], plane));
     } else {
-      if (is_mirrored(features, targets_))
-        return fail(
-            ErrorCode::features_mirrored,
-            fmt::format(
-                "decal '{}': the features {} run one way round in the image and the other way round on "
-                "the surface, so that the image would have to be mirrored; swap the places of left and "
-                "right, or mirror the image",
-                input_.name, feature_range()));
-      similarity = fit_similarity(features, targets_);
+      // Where the image lies over itself only the graph's triangles tell.
+      mirrored_ = (groups_.count == 1 || !map_.graph.triangles.empty()) &&
+                  is_mirrored(features, targets_, map_.graph.triangles);
+      similarity = groups_.count > 1 ? fit_by_edges(features, targets_, map_.graph.tree)
+                                     : fit_similarity(features, targets_);
     }
     scale_ = std::abs(similarity.scale);
     for (Vec2& z : features) z = similarity(z);
     for (Vec2& z : plane) z = similarity(z);
     return {};
+  }
+
+  /// Features move the image in groups while it lies over itself in the plane (§3.6 of the design). The first
+  /// embeddings are of thin patches and may mislead; later on there is no way back, so that the growth ends.
+  void choose_groups(const ImmersedDisc& disc, const std::vector<Vec2>& features) {
+    const bool graph = graph_overlaps(features, map_.graph);
+    if (!graph && !overlaps_in_plane(disc, points_, input_.region)) {
+      if (map_.solves <= trial_solves) groups_ = {};
+      return;
+    }
+    if (groups_.count > 1 && map_.solves > trial_solves) return;
+    if (clusters_.empty()) clusters_ = cluster_features(input_.region, targets_, map_.graph);
+    const bool one = std::all_of(clusters_.begin(), clusters_.end(), [](std::uint32_t g) { return g == 0; });
+    const auto groups = cut_overlapping_groups(clusters_, features, map_.graph, one && !graph);
+    if (groups == groups_.of) return;
+    influence_field_.emplace(input_.region, targets_, map_.graph, groups);
+    groups_ = groups_of(*influence_field_, groups);
+  }
+
+  /// The warp of the embedding, and where it takes the vertices. With groups, a vertex is under the influence
+  /// that its place in the image is under, which hangs on where the warp takes it: fixed-point steps from the
+  /// last place (§3.7 of the design).
+  void warp_points(const std::vector<Vec2>& plane, const std::vector<Vec2>& features) {
+    find_influence();
+    built_ = build_warp(features, targets_, map_.graph, probes(features), groups_);
+    const int refreshes = groups_.count == 1 ? 0 : most_refreshes;
+    for (int refresh = 0; refresh <= refreshes; ++refresh) {
+      if (refresh > 0) find_influence();
+      const std::vector<Vec2> image = warp_all(built_.warp, plane, influence_);
+      double moved = 0;
+      for (std::size_t v = 0; v < image.size(); ++v) {
+        Vec2& at = points_[PatchVertexId(v)].image;
+        moved = std::max(moved, std::abs(image[v] - at));
+        at = image[v];
+      }
+      if (moved < refreshed * input_.region.diameter()) break;
+    }
+  }
+
+  void find_influence() {
+    if (groups_.count == 1) return;
+    influence_.resize(points_.size() * groups_.count);
+    for (PatchVertexId v : ids<PatchVertexId>(points_.size()))
+      influence_field_->at(points_[v].image,
+                           std::span(influence_).subspan(v.value * groups_.count, groups_.count));
   }
 
   [[nodiscard]] std::string feature_range() const {
@@ -192,25 +253,35 @@ class Solver {
     return z;
   }
 
-  /// Places between the features, where the warp bends most.
-  [[nodiscard]] std::vector<Vec2> probes(const std::vector<Vec2>& features) const {
-    std::vector<Vec2> probes;
+  /// Places between the features, where the warp bends most; with groups, vertices all over the patch.
+  [[nodiscard]] std::vector<WarpProbe> probes(const std::vector<Vec2>& features) const {
+    std::vector<WarpProbe> probes;
+    if (groups_.count > 1) {
+      const std::size_t stride = std::max<std::size_t>(1, points_.size() / 64);
+      for (std::size_t v = 0; v < points_.size(); v += stride) {
+        const auto influence = std::span(influence_).subspan(v * groups_.count, groups_.count);
+        probes.push_back({points_[PatchVertexId(v)].plane, {influence.begin(), influence.end()}});
+      }
+      return probes;
+    }
     for (const auto& [i, j] : map_.graph.planar)
       for (const double t : {0.25, 0.5, 0.75})
-        probes.push_back(features[i] + t * (features[j] - features[i]));
+        probes.push_back({features[i] + t * (features[j] - features[i]), {}});
     const std::vector<Vec2>& polygon = input_.region.polygon();
     const std::size_t stride = std::max<std::size_t>(1, polygon.size() / 16);
-    for (std::size_t i = 0; i < polygon.size(); i += stride) probes.push_back(polygon[i]);
+    for (std::size_t i = 0; i < polygon.size(); i += stride) probes.push_back({polygon[i], {}});
     return probes;
   }
 
   /// The loop of §2.6 of the design: parameterize, peel, grow, until the region is covered. The conformal
-  /// map, which costs a third of the isometric one, does while the patch is far from its final size.
+  /// map, which costs a third of the isometric one, does while the patch is far from its final size. Where
+  /// the region would meet itself it may have to go on over itself, one sheet more at a time.
   Result<void> grow(ImmersedDisc& disc, Growth& growth) {
     Energy energy = Energy::conformal;
     bool padded = false;
     while (true) {
       APPLIQUE_CHECK(parameterize(disc, growth, {energy, !padded}));
+      if (options_.trace != nullptr) trace_step(disc, growth);
       StageTimer stage(map_.times.grow);
       if (map_.solves >= options_.max_solves) break;
       auto inside = growth.inside(points_);
@@ -218,54 +289,139 @@ class Solver {
       const std::size_t added =
           growth.grow(points_, inside, scale_, {}) + growth.fill_pockets(points_, inside, scale_);
       if (added == 0 && peeled == 0) {
+        // Thin patches mislead: what they say of the features' order counts once the patch is grown.
+        if (mirrored_)
+          return fail(
+              ErrorCode::features_mirrored,
+              fmt::format(
+                  "decal '{}': the features {} run one way round in the image and the other way round on "
+                  "the surface, so that the image would have to be mirrored; swap the places of left and "
+                  "right, or mirror the image",
+                  input_.name, feature_range()));
         if (energy != options_.energy) {
           energy = options_.energy;
           continue;
         }
         if (padded) break;
-        growth.pad(points_);
-        padded = true;
+        if (may_cover_more(disc, growth)) {
+          growth.set_cover_limit(growth.cover_limit() + 1);
+          if (growth.grow(points_, inside, scale_, {}) > 0) energy = Energy::conformal;
+        } else {
+          growth.pad(points_);
+          padded = true;
+        }
       }
       growth.compact(points_);
-#ifdef APPLIQUE_CHECK_INVARIANTS
-      APPLIQUE_ASSERT(disc.broken_invariant().empty());
-#endif
+      APPLIQUE_ASSERT(!(always_check_patch || options_.check_patch) || disc.broken_invariant().empty());
     }
     map_.status = growth.coverage(points_);
     return {};
   }
 
-  void finish(const ImmersedDisc& disc, const Growth& growth) {
-    StageTimer stage(map_.times.quality);
+  /// Whether the region stops at itself and may go on, unless the patch has run out of all proportion.
+  [[nodiscard]] bool may_cover_more(const ImmersedDisc& disc, const Growth& growth) const {
+    if (options_.overlap == Overlap::stop || growth.cover_limit() >= most_sheets ||
+        growth.coverage(points_) != Coverage::clipped_by_cover)
+      return false;
+    double area = 0;
     for (const PatchFace& face : disc.faces()) {
-      const bool bridge = bridged_.is_bridge(face.mesh_face);
-      map_.patch.faces.push_back(face);
-      if (bridge) map_.patch.faces.raw().back().mesh_face = FaceId();
       const auto& v = face.vertices;
-      map_.textured.push_back(!bridge && input_.region.meets_triangle(
-                                             points_[v[0]].image, points_[v[1]].image, points_[v[2]].image));
+      const Vec2 origin = points_[v[0]].plane;
+      area += 0.5 * cross(points_[v[1]].plane - origin, points_[v[2]].plane - origin);
+    }
+    return area < most_patch_area * input_.region.area();
+  }
+
+  /// The disc as a patch over the surface alone, without what bridges its holes.
+  [[nodiscard]] Patch patch_of(const ImmersedDisc& disc) const {
+    Patch patch;
+    for (PatchFace face : disc.faces()) {
+      if (bridged_.is_bridge(face.mesh_face)) face.mesh_face = FaceId();
+      patch.faces.push_back(face);
     }
     for (PatchVertexId v : ids<PatchVertexId>(disc.vertex_count())) {
       const VertexId over = disc.mesh_vertex(v);
-      map_.patch.vertices.push_back(bridged_.is_bridge(over) ? VertexId() : over);
+      patch.vertices.push_back(bridged_.is_bridge(over) ? VertexId() : over);
+    }
+    return patch;
+  }
+
+  void trace_step(const ImmersedDisc& disc, const Growth& growth) {
+    SolveTrace::Step step;
+    step.patch = patch_of(disc);
+    for (const PatchPoint& point : points_) {
+      step.plane.push_back(point.plane);
+      step.image.push_back(point.image);
+    }
+    step.inside = growth.inside(points_);
+    for (std::size_t k = 0; k < targets_.size(); ++k)
+      step.features.push_back(
+          interpolate(disc, growth.feature_faces()[k], input_.features[k].surface, step.plane.raw()));
+    step.contour = divided_contour();
+    if (built_.warp.steps > 0) {
+      std::vector<double> influence(groups_.count);
+      for (Vec2& z : step.contour) {
+        if (groups_.count > 1) influence_field_->at(z, influence);
+        z = built_.warp.backward(z, influence);
+      }
+    }
+    options_.trace->steps.push_back(std::move(step));
+  }
+
+  /// The region's polygon with its edges divided finely enough to show how they bend.
+  [[nodiscard]] std::vector<Vec2> divided_contour() const {
+    const std::vector<Vec2>& polygon = input_.region.polygon();
+    std::vector<Vec2> contour;
+    for (std::size_t i = 0; i < polygon.size(); ++i) {
+      const Vec2 edge = polygon[(i + 1) % polygon.size()] - polygon[i];
+      const auto parts = static_cast<int>(1 + std::abs(edge) / (0.01 * input_.region.diameter()));
+      for (int k = 0; k < parts; ++k) contour.push_back(polygon[i] + static_cast<double>(k) / parts * edge);
+    }
+    return contour;
+  }
+
+  void finish(const ImmersedDisc& disc, const Growth& growth) {
+    StageTimer stage(map_.times.quality);
+    map_.patch = patch_of(disc);
+    for (const PatchFace& face : map_.patch.faces) {
+      const auto& v = face.vertices;
+      map_.textured.push_back(
+          face.mesh_face.valid() &&
+          input_.region.meets_triangle(points_[v[0]].image, points_[v[1]].image, points_[v[2]].image));
     }
     for (const PatchPoint& point : points_) {
       map_.plane.push_back(point.plane);
       map_.image.push_back(point.image);
     }
     map_.warp = std::move(built_.warp);
-    map_.depth.resize(map_.patch.faces.size(), 0);
-    map_.influence.assign(map_.patch.vertices.size(), 1);
+    map_.groups = groups_.count;
+    map_.feature_groups = groups_.of;
+    map_.influence = groups_.count == 1 ? std::vector<double>(map_.patch.vertices.size(), 1) : influence_;
+    order_sheets(growth);
     mark_linear_faces(growth);
     map_.quality = measure_quality(surface_, map_.patch, map_.plane, map_.image, map_.textured, map_.warp,
-                                   input_.region);
+                                   input_.region, map_.influence);
     for (std::size_t k = 0; k < targets_.size(); ++k) {
+      const auto& corners = disc.faces()[growth.feature_faces()[k]].vertices;
+      const std::vector<double> influence =
+          map_.influence_at(corners, input_.features[k].surface.barycentric);
       const Vec2 at = map_.warp(
-          interpolate(disc, growth.feature_faces()[k], input_.features[k].surface, map_.plane.raw()));
+          interpolate(disc, growth.feature_faces()[k], input_.features[k].surface, map_.plane.raw()),
+          influence);
       map_.quality.feature_residual.push_back(std::abs(at - targets_[k]) *
                                               input_.region.frame().pixels_per_unit());
     }
     warn();
+  }
+
+  void order_sheets(const Growth& growth) {
+    std::vector<DepthFeature> features;
+    for (std::size_t k = 0; k < targets_.size(); ++k)
+      features.push_back({targets_[k], growth.feature_faces()[k], input_.features[k].depth});
+    SheetOrder order = applique::order_sheets(map_.patch, map_.image, features, map_.graph.tree);
+    map_.sheets = order.sheets;
+    map_.depth = std::move(order.depth);
+    map_.sheet = std::move(order.sheet);
   }
 
   /// A face is linear when the warp at its edges' middles and its centroid agrees with interpolation, and no
@@ -280,6 +436,7 @@ class Solver {
       PatchFaceId face, across;
     };
     std::vector<Vec2> places;
+    std::vector<double> influence;
     std::vector<Test> tests;
     const auto test = [&](std::initializer_list<PatchVertexId> corners, PatchFaceId face,
                           PatchFaceId across) {
@@ -291,6 +448,11 @@ class Solver {
       }
       places.push_back(plane);
       tests.push_back({image, face, across});
+      for (std::uint32_t g = 0; g < map_.groups; ++g) {
+        double sum = 0;
+        for (PatchVertexId v : corners) sum += map_.influence[v.value * map_.groups + g] / n;
+        influence.push_back(sum);
+      }
     };
     for (PatchFaceId q : ids<PatchFaceId>(map_.patch.faces.size())) {
       const auto& [mesh_face, v, neighbours] = map_.patch.faces[q];
@@ -299,10 +461,16 @@ class Solver {
       for (int k = 0; k < 3; ++k) {
         const PatchFaceId across = neighbours[k];
         if (across.valid() && map_.textured[across] && across < q) continue;  // tested from there
-        test({v[(k + 1) % 3], v[(k + 2) % 3]}, q, across);
+        const PatchVertexId a = v[(k + 1) % 3], b = v[(k + 2) % 3];
+        test({a, b}, q, across);
+        // An influence that goes from 0 to 1 along the side is right in its middle.
+        if (map_.groups > 1) {
+          test({a, a, a, b}, q, across);
+          test({a, b, b, b}, q, across);
+        }
       }
     }
-    const std::vector<Vec2> exact = warp_all(map_.warp, places);
+    const std::vector<Vec2> exact = warp_all(map_.warp, places, influence);
     for (std::size_t i = 0; i < tests.size(); ++i) {
       if (std::abs(exact[i] - tests[i].image) <= tolerance) continue;
       map_.linear[tests[i].face] = false;
@@ -312,7 +480,7 @@ class Solver {
   }
 
   void warn() {
-    map_.warnings = quality_warnings(input_.name, map_);
+    map_.warnings = quality_warnings(input_.name, map_, options_.overlap);
     const auto add = [&](const char* code, std::string message) {
       map_.warnings.push_back({code, fmt::format("decal '{}': {}", input_.name, message)});
     };
@@ -333,12 +501,26 @@ class Solver {
   std::vector<Vec2> targets_;  ///< Features in the image, plane units.
   PatchPoints points_;
   BuiltWarp built_;
+  bool mirrored_ = false;  ///< By the last embedding, the features run the other way round on the surface.
+  std::vector<std::uint32_t> clusters_;  ///< Group by feature, as the image has them; once asked for.
+  FeatureGroups groups_;
+  std::optional<InfluenceField> influence_field_;  ///< Of groups_, while there are several.
+  std::vector<double> influence_;                  ///< [vertex * groups + group], while there are several.
   EmbeddingRung rung_ = EmbeddingRung::conformal;
   double scale_ = 1;  ///< Of the alignment, plane units per scene unit.
   DecalMap map_;
 };
 
 }  // namespace
+
+std::vector<double> DecalMap::influence_at(const std::array<PatchVertexId, 3>& corners,
+                                           const std::array<double, 3>& barycentric) const {
+  std::vector<double> at(groups, 0);
+  for (int k = 0; k < 3; ++k)
+    for (std::uint32_t g = 0; g < groups; ++g)
+      at[g] += barycentric[k] * influence[corners[k].value * groups + g];
+  return at;
+}
 
 Result<DecalMap> solve_decal(const SurfaceMesh& surface, const DecalInput& input,
                              const SolveOptions& options) {

@@ -26,7 +26,7 @@ std::string feature_name(const DecalInput& input, std::size_t k) {
 }
 
 Result<void> check_input(const SurfaceMesh& surface, const DecalInput& input,
-                         const std::vector<Vec2>& targets) {
+                         const std::vector<Vec2>& targets, Overlap overlap) {
   const std::string prefix = fmt::format("decal '{}': ", input.name);
   if (input.features.empty())
     return fail(ErrorCode::feature_place_invalid,
@@ -48,10 +48,12 @@ Result<void> check_input(const SurfaceMesh& surface, const DecalInput& input,
                  b = position_of(surface, input.features[k].surface);
       const auto corners = surface.corners(input.features[k].surface.face);
       const double size = (corners[1] - corners[0]).norm() + (corners[2] - corners[0]).norm();
-      if ((a - b).norm() <= coincident * size)
-        return fail(ErrorCode::features_coincide,
-                    fmt::format("{}{} and {} are on one spot of the surface; remove one of them", prefix,
-                                feature_name(input, j), feature_name(input, k)));
+      if (overlap == Overlap::stop && (a - b).norm() <= coincident * size)
+        return fail(
+            ErrorCode::features_coincide,
+            fmt::format("{}{} and {} are on one spot of the surface; remove one of them, or give the decal "
+                        "\"overlap\": \"allow\" if the image is to lie over itself there",
+                        prefix, feature_name(input, j), feature_name(input, k)));
     }
   }
   if (input.features.size() == 1 && !(input.lone && input.lone->width > 0))

@@ -10,7 +10,7 @@ constexpr double high_stretch = 3;
 
 }  // namespace
 
-std::vector<Warning> quality_warnings(const std::string& name, const DecalMap& map) {
+std::vector<Warning> quality_warnings(const std::string& name, const DecalMap& map, Overlap overlap) {
   std::vector<Warning> warnings;
   const auto add = [&](const char* code, std::string message) {
     warnings.push_back({code, fmt::format("decal '{}': {}", name, message)});
@@ -25,7 +25,10 @@ std::vector<Warning> quality_warnings(const std::string& name, const DecalMap& m
       break;
     case Coverage::clipped_by_cover:
       add("clipped_by_cover",
-          fmt::format("the region meets itself on the surface; {:.2f} % of it is shown", percent));
+          fmt::format("the region meets itself on the surface; {:.2f} % of it is shown{}", percent,
+                      overlap == Overlap::stop
+                          ? "; \"overlap\": \"allow\" on the decal lets it go on over itself"
+                          : ""));
       break;
     case Coverage::clipped_closed:
       add("clipped_closed",

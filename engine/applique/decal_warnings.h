@@ -10,6 +10,6 @@ namespace applique {
 /// What a person should know of a solved decal, whatever the method: how much of it is shown, and why not all
 /// (clipped_by_boundary, clipped_by_cover, clipped_closed, not_converged); flipped_triangles;
 /// overlapping_map; high_stretch. `name` is the decal's.
-std::vector<Warning> quality_warnings(const std::string& name, const DecalMap& map);
+std::vector<Warning> quality_warnings(const std::string& name, const DecalMap& map, Overlap overlap);
 
 }  // namespace applique

@@ -18,6 +18,7 @@ struct SolveTrace {
     IdVector<PatchVertexId, Vec2> image;   ///< Where the warp puts the vertices in the image, plane units.
     IdVector<PatchVertexId, char> inside;  ///< The set S of §5.2.1 of the paper.
     std::vector<Vec2> features;            ///< Where the features are in the plane.
+    std::vector<Vec2> contour;  ///< The region's contour carried into the plane, its edges divided.
     double lambda = 1;  ///< Paper's method: less than 1 where it rolled back, the share of the way it took.
   };
   /// The surface vertices passed, by FeatureGraph::tree; in the paper's method by ConvexGraph::edges.

@@ -1,6 +1,7 @@
 #include "commands/common.h"
 
 #include <algorithm>
+#include <cstdio>
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
@@ -9,6 +10,11 @@
 #include "progress.h"
 
 namespace applique {
+namespace {
+
+constexpr int largest_side = 4096;  // pixels of a picture
+
+}  // namespace
 
 CLI::App* add_subcommand(CLI::App& app, const std::string& name, const std::string& description,
                          const std::string& examples) {
@@ -47,6 +53,35 @@ StageCallback show_stages(Progress& progress, double start, double share) {
     progress.show(stage, start + share * done);
   };
 }
+
+Result<Job> load_job_of_decal(const std::filesystem::path& path, const std::string& decal) {
+  APPLIQUE_TRY(Job job, load_job(path));
+  if (!decal.empty()) {
+    std::erase_if(job.decals, [&](const DecalJob& other) { return other.name != decal; });
+    if (job.decals.empty())
+      return fail(ErrorCode::json_invalid, fmt::format("{}: has no decal '{}'", path.string(), decal));
+  }
+  job.decals.resize(1);
+  return job;
+}
+
+PictureSize parse_size(const std::string& text) {
+  PictureSize size = {0, 0};
+  int length = 0;
+  if (std::sscanf(text.c_str(), "%5dx%5d%n", &size.width, &size.height, &length) != 2 ||
+      static_cast<std::size_t>(length) != text.size())
+    return {0, 0};
+  return size;
+}
+
+const CLI::Validator picture_size(
+    [](std::string& text) {
+      const PictureSize size = parse_size(text);
+      if (std::min(size.width, size.height) >= 1 && std::max(size.width, size.height) <= largest_side)
+        return std::string();
+      return fmt::format("{}: expected WIDTHxHEIGHT in pixels, each from 1 to {}", text, largest_side);
+    },
+    "");
 
 const CLI::Validator model_extension(
     [](std::string& path) {

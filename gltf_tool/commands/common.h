@@ -8,6 +8,7 @@
 
 #include "applique/base/error.h"
 
+#include "model_picture.h"
 #include "solve_job.h"
 
 namespace applique {
@@ -34,6 +35,16 @@ void log_decals(const SolvedJob& job);
 /// A callback that shows stages on a progress bar, as the part of the whole work that begins at `start` and
 /// takes `share`, both 0..1; and logs them.
 StageCallback show_stages(class Progress& progress, double start, double share);
+
+/// The job with one decal alone: the one of this name, or the first if the name is empty. Errors: those of
+/// load_job; json_invalid when it has no such decal.
+Result<Job> load_job_of_decal(const std::filesystem::path& path, const std::string& decal);
+
+/// "1200x900" as a size; a side of 0 if it is nothing of the kind.
+PictureSize parse_size(const std::string& text);
+
+/// For options that name the size of a picture: what parse_size understands, 1 to 4096 pixels a side.
+extern const CLI::Validator picture_size;
 
 /// For options that name a model to write: .glb or .gltf.
 extern const CLI::Validator model_extension;

@@ -1,11 +1,5 @@
 #include "commands/render.h"
 
-#include <algorithm>
-#include <array>
-#include <cstdio>
-
-#include <fmt/format.h>
-
 #include "model_picture.h"
 #include "output_file.h"
 #include "progress.h"
@@ -14,38 +8,10 @@
 namespace applique {
 namespace {
 
-constexpr int largest_side = 4096;
-
-/// "1200x900"; a side of 0 if it is nothing of the kind.
-PictureSize parse_size(const std::string& text) {
-  PictureSize size = {0, 0};
-  int length = 0;
-  if (std::sscanf(text.c_str(), "%5dx%5d%n", &size.width, &size.height, &length) != 2 ||
-      static_cast<std::size_t>(length) != text.size())
-    return {0, 0};
-  return size;
-}
-
-const CLI::Validator picture_size(
-    [](std::string& text) {
-      const PictureSize size = parse_size(text);
-      if (std::min(size.width, size.height) >= 1 && std::max(size.width, size.height) <= largest_side)
-        return std::string();
-      return fmt::format("{}: expected WIDTHxHEIGHT in pixels, each from 1 to {}", text, largest_side);
-    },
-    "");
-
 Result<Camera> find_camera(const RenderArguments& arguments, const Model& model, PictureSize size) {
   if (!arguments.job)
     return camera_around_model(model, arguments.azimuth, arguments.elevation, arguments.zoom, size);
-  APPLIQUE_TRY(Job job, load_job(*arguments.job));
-  if (!arguments.decal.empty()) {
-    std::erase_if(job.decals, [&](const DecalJob& decal) { return decal.name != arguments.decal; });
-    if (job.decals.empty())
-      return fail(ErrorCode::json_invalid,
-                  fmt::format("{}: has no decal '{}'", arguments.job->string(), arguments.decal));
-  }
-  job.decals.resize(1);
+  APPLIQUE_TRY(const Job job, load_job_of_decal(*arguments.job, arguments.decal));
   APPLIQUE_TRY(const SolvedJob solved, solve_job(job));
   return camera_on_decal(solved.decals.front(), size);
 }

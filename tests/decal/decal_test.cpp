@@ -149,6 +149,34 @@ TEST(Decal, FeaturesAreExactOnABump) {
   }
 }
 
+TEST(Decal, TracesWhatItWentThrough) {
+  const SurfaceMesh surface = shapes::bump(64, 0.6, 0.35).weld();
+  const DecalInput input = decal(surface, rectangle(), bent_pins());
+  SolveTrace trace;
+  SolveOptions options;
+  options.trace = &trace;
+  const auto map = solve_decal(surface, input, options);
+  ASSERT_TRUE(map.has_value()) << map.error().message;
+  ASSERT_EQ(trace.paths.size(), map->graph.tree.size());
+  for (std::size_t e = 0; e < trace.paths.size(); ++e) {
+    ASSERT_FALSE(trace.paths[e].empty());
+    const auto touches = [&](VertexId v, std::uint32_t feature) {
+      const auto& corners = surface.faces[input.features[feature].surface.face];
+      return std::find(corners.begin(), corners.end(), v) != corners.end();
+    };
+    const auto [i, j] = map->graph.tree[e];
+    const VertexId first = trace.paths[e].front(), last = trace.paths[e].back();
+    EXPECT_TRUE((touches(first, i) && touches(last, j)) || (touches(first, j) && touches(last, i)));
+  }
+  ASSERT_EQ(trace.steps.size(), static_cast<std::size_t>(map->solves));
+  const SolveTrace::Step& last = trace.steps.back();
+  EXPECT_LT(trace.steps.front().patch.faces.size(), last.patch.faces.size());
+  EXPECT_EQ(last.plane.raw(), map->plane.raw());
+  EXPECT_EQ(last.image.raw(), map->image.raw());
+  // The contour in the plane is what the warp takes onto the contour in the image.
+  for (const Vec2 z : last.contour) EXPECT_LT(std::abs(input.region.signed_distance(map->warp(z))), 1e-4);
+}
+
 /// The image of surface points under a map, found by position: comparable between numberings.
 std::vector<Vec2> sample_map(const SurfaceMesh& surface, const DecalMap& map,
                              const std::vector<Vec3>& places) {

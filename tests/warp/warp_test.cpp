@@ -68,6 +68,12 @@ TEST(Warp, TranslatesEveryPointUnderACommonTranslation) {
     EXPECT_LT(std::abs(built.warp(z) - z - Vec2(0.25, -0.5)), 1e-13);
 }
 
+std::vector<WarpProbe> probes_at(const std::vector<Vec2>& places) {
+  std::vector<WarpProbe> probes;
+  for (Vec2 z : places) probes.push_back({z, {}});
+  return probes;
+}
+
 TEST(Warp, SwappingTheEndsInvertsIt) {
   std::mt19937 random(9);
   std::uniform_real_distribution<double> shift(-0.1, 0.1);
@@ -76,8 +82,8 @@ TEST(Warp, SwappingTheEndsInvertsIt) {
   for (Vec2& z : to) z += Vec2(shift(random), shift(random));
   const std::vector<Vec2> probes = random_points(random, 15, 1);
   const WarpOptions fine{1e-12, 256};
-  const BuiltWarp there = build_warp(from, to, open_graph(6), probes, fine);
-  const BuiltWarp back = build_warp(to, from, open_graph(6), probes, fine);
+  const BuiltWarp there = build_warp(from, to, open_graph(6), probes_at(probes), {}, fine);
+  const BuiltWarp back = build_warp(to, from, open_graph(6), probes_at(probes), {}, fine);
   for (Vec2 z : probes) EXPECT_LT(std::abs(back.warp(there.warp(z)) - z), 1e-8);
 }
 
@@ -85,9 +91,21 @@ TEST(Warp, StepsAreRefinedUntilTheProbesRest) {
   std::mt19937 random(10);
   const std::vector<Vec2> from = random_points(random, 6, 0.9), to = random_points(random, 6, 0.9);
   const std::vector<Vec2> probes = random_points(random, 15, 1);
-  const BuiltWarp coarse = build_warp(from, to, open_graph(6), probes, {2e-5, 1024});
-  const BuiltWarp fine = build_warp(from, to, open_graph(6), probes, {1e-9, 8192});
+  const BuiltWarp coarse = build_warp(from, to, open_graph(6), probes_at(probes), {}, {2e-5, 1024});
+  const BuiltWarp fine = build_warp(from, to, open_graph(6), probes_at(probes), {}, {1e-9, 8192});
   for (Vec2 z : probes) EXPECT_LT(std::abs(coarse.warp(z) - fine.warp(z)), 4e-5);
+}
+
+TEST(Warp, RunsBackwardsToo) {
+  std::mt19937 random(8);
+  const std::vector<Vec2> from = random_points(random, 6, 0.8);
+  std::vector<Vec2> to = from;
+  std::uniform_real_distribution<double> shift(-0.1, 0.1);
+  for (Vec2& z : to) z += Vec2(shift(random), shift(random));
+  const std::vector<Vec2> places = random_points(random, 12, 1);
+  const Warp warp = build_warp(from, to, open_graph(6), places).warp;
+  for (const Vec2 z : places) EXPECT_LT(std::abs(warp.backward(warp(z)) - z), 1e-4);
+  for (std::size_t k = 0; k < to.size(); ++k) EXPECT_LT(std::abs(warp.backward(to[k]) - from[k]), 1e-13);
 }
 
 TEST(Warp, OneAndTwoFeaturesNeedNone) {

@@ -13,6 +13,7 @@ struct CodeEntry {
 };
 
 constexpr CodeEntry code_table[] = {
+    {ErrorCode::option_invalid, "option_invalid", 1},
     {ErrorCode::file_unreadable, "file_unreadable", 2},
     {ErrorCode::json_invalid, "json_invalid", 2},
     {ErrorCode::schema_violation, "schema_violation", 2},

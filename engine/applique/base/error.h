@@ -10,6 +10,8 @@ namespace applique {
 
 /// What went wrong, one name per cause. The name is stable: reports, tests and scripts match on it.
 enum class ErrorCode {
+  // The command line asks for what is not there.
+  option_invalid,
   // The input cannot be read or is invalid.
   file_unreadable,
   json_invalid,
@@ -40,7 +42,7 @@ enum class ErrorCode {
 /// The stable name of `code`: "contour_self_crossing".
 std::string_view name_of(ErrorCode code);
 
-/// Process exit status: 2 invalid input, 3 unsolvable job, 4 output not writable, 5 no usable device.
+/// Process exit status: 1 wrong usage, 2 invalid input, 3 unsolvable job, 4 output not writable, 5 no usable device.
 int exit_status(ErrorCode code);
 
 /// A failure of data, device or solver: a code to match on and a sentence for a person that names the

@@ -22,6 +22,7 @@
 #include "applique/paper/paper_seed.h"
 #include "applique/paper/patch_update.h"
 #include "applique/paper/region_walk.h"
+#include "applique/patch/sheets.h"
 
 namespace applique {
 namespace {
@@ -255,7 +256,7 @@ class PaperSolver {
     map_.image = located_.image;
     const std::size_t faces = map_.patch.faces.size();
     map_.linear.resize(faces, true);
-    map_.depth.resize(faces, 0);
+    order_sheets(seed);
     map_.influence.assign(map_.patch.vertices.size(), 1);
     std::uint32_t flipped = 0;
     for (const PatchFace& face : map_.patch.faces) {
@@ -272,7 +273,18 @@ class PaperSolver {
       map_.quality.feature_residual.push_back(std::abs(image_of_feature(seed, k) - targets_[k]) *
                                               input_.region.frame().pixels_per_unit());
     map_.status = coverage(seed);
-    for (Warning& warning : quality_warnings(input_.name, map_)) map_.warnings.push_back(std::move(warning));
+    for (Warning& warning : quality_warnings(input_.name, map_, options_.overlap))
+      map_.warnings.push_back(std::move(warning));
+  }
+
+  void order_sheets(const PaperSeed& seed) {
+    std::vector<DepthFeature> features;
+    for (std::size_t k = 0; k < targets_.size(); ++k)
+      features.push_back({targets_[k], seed.disc.fan(seed.features[k]).front(), input_.features[k].depth});
+    SheetOrder order = applique::order_sheets(map_.patch, map_.image, features, map_.graph.tree);
+    map_.sheets = order.sheets;
+    map_.depth = std::move(order.depth);
+    map_.sheet = std::move(order.sheet);
   }
 
   /// Where the feature's own place, which may be off its vertex, has come to.

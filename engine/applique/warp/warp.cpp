@@ -83,4 +83,17 @@ Vec2 Warp::operator()(Vec2 p, std::span<const double> influence) const {
   return p;
 }
 
+Vec2 Warp::backward(Vec2 p, std::span<const double> influence) const {
+  Scratch scratch(*this, influence);
+  const double h = -1.0 / steps;
+  for (std::uint32_t step = steps; step-- > 0;) {
+    const Vec2 k1 = velocity_at(*this, p, 3 * step + 2, scratch);
+    const Vec2 k2 = velocity_at(*this, p + 0.5 * h * k1, 3 * step + 1, scratch);
+    const Vec2 k3 = velocity_at(*this, p + 0.5 * h * k2, 3 * step + 1, scratch);
+    const Vec2 k4 = velocity_at(*this, p + h * k3, 3 * step, scratch);
+    p += h / 6 * (k1 + 2.0 * k2 + 2.0 * k3 + k4);
+  }
+  return p;
+}
+
 }  // namespace applique

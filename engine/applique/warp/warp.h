@@ -38,6 +38,8 @@ struct Warp {
   [[nodiscard]] Vec2 velocity(Vec2 p, std::uint32_t stage, std::span<const double> influence = {}) const;
   /// Where the flow takes p.
   [[nodiscard]] Vec2 operator()(Vec2 p, std::span<const double> influence = {}) const;
+  /// Where the flow comes from that ends at p, to the integration's tolerance: image -> plane.
+  [[nodiscard]] Vec2 backward(Vec2 p, std::span<const double> influence = {}) const;
 };
 
 /// How an influence counts in a warp of `groups` groups: 0 up to a threshold, 1 from 1 less the threshold,

@@ -1,10 +1,10 @@
-#include "draw.h"
+#include "applique/image/draw.h"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
-namespace applique::assets {
+namespace applique::draw {
 namespace {
 
 constexpr int sub_lines = 8;  // scan lines a pixel
@@ -302,4 +302,4 @@ std::vector<Dab> mirrored(std::vector<Dab> dabs, double axis) {
   return dabs;
 }
 
-}  // namespace applique::assets
+}  // namespace applique::draw

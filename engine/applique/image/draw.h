@@ -9,7 +9,7 @@
 
 /// A small vector painter: shapes given by their outlines or strokes, filled with anti-aliased edges. Pixels,
 /// y down; points are complex numbers (x + iy). Colours are sRGB in [0, 1].
-namespace applique::assets {
+namespace applique::draw {
 
 using Outline = std::vector<Vec2>;
 
@@ -100,4 +100,4 @@ Outline rounded_rectangle(Vec2 low, Vec2 high, double radius);
 Outline mirrored(Outline outline, double axis);
 std::vector<Dab> mirrored(std::vector<Dab> dabs, double axis);
 
-}  // namespace applique::assets
+}  // namespace applique::draw
