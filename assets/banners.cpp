@@ -51,6 +51,7 @@ Image draw_band(int width, int height, const Outline& curve, double half_width,
     walked += std::abs(curve[i] - curve[i - 1]);
     constexpr double spacing = 56;
     if (std::floor(walked / spacing) == std::floor(before / spacing)) continue;
+    if (std::abs(curve.back() - curve[i]) < 0.5 * spacing) break;
     const bool large = static_cast<int>(walked / spacing) % 2 == 0;
     canvas.fill(circle(curve[i], large ? 13 : 7), solid(cream));
     if (large) canvas.fill(circle(curve[i], 7), solid(ink));

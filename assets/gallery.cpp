@@ -47,12 +47,12 @@ Result<void> write_sets(const std::filesystem::path& folder) {
 /// The snake as it is, and pulled straight: each feature up to a third of the image's height away from where
 /// it would lie.
 Result<void> write_snakes(const std::filesystem::path& folder) {
-  constexpr double scale = 1.5 / 1024;
+  constexpr double scale = 1.15 / 1024;
   ordered_json waves = ordered_json::array(), straight = ordered_json::array();
   for (const double t : {0.03, 1.0 / 6, 1.0 / 3, 0.5, 2.0 / 3, 5.0 / 6, 0.97}) {
     const Pixel p = snake_point(t);
     waves.push_back(feature(p, on_drum(scale * (p.x - 512), scale * (256 - p.y))));
-    straight.push_back(feature(p, on_drum(2.2 * (t - 0.5), 0.2 * scale * (256 - p.y))));
+    straight.push_back(feature(p, on_drum(1.2 * (t - 0.5), 0.2 * scale * (256 - p.y))));
   }
   APPLIQUE_CHECK(write_job(folder / "gallery-snake.json", "drum.glb", "snake", waves));
   return write_job(folder / "gallery-straight.json", "drum.glb", "snake", straight);

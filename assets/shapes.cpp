@@ -31,8 +31,14 @@ Mesh bend_sheet(int columns, int rows, const std::function<Vec3(double u, double
   };
   for (int row = 0; row < rows; ++row)
     for (int column = 0; column < columns; ++column) {
-      mesh.triangles.push_back({at(column, row), at(column, row + 1), at(column + 1, row + 1)});
-      mesh.triangles.push_back({at(column, row), at(column + 1, row + 1), at(column + 1, row)});
+      // Diagonals alternate, so that no direction is better than its mirror image.
+      const std::uint32_t a = at(column, row), b = at(column, row + 1), c = at(column + 1, row + 1),
+                          d = at(column + 1, row);
+      if ((row + column) % 2 == 0) {
+        mesh.triangles.insert(mesh.triangles.end(), {{a, b, c}, {a, c, d}});
+      } else {
+        mesh.triangles.insert(mesh.triangles.end(), {{a, b, d}, {b, c, d}});
+      }
     }
   return mesh;
 }

@@ -203,7 +203,7 @@ class Picture {
       const auto& contour = steps[shown.back()].contour;
       extent.insert(extent.end(), contour.begin(), contour.end());
     }
-    const auto panels = boxes(count);
+    const auto panels = lay_out(options_.size, count, aspect_of(extent));
     for (std::size_t i = 0; i < count; ++i) {
       draw_step(steps[shown[i]], panels[i], fit(extent, panels[i], 0.1));
       const double height = 1.6 * pen_for(panels[i]).mark;

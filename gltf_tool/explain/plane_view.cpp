@@ -87,7 +87,7 @@ void draw_patch(Canvas& canvas, const Patch& patch, const IdVector<PatchVertexId
       const PatchFaceId across = patch.faces[q].neighbours[k];
       if (across.valid() && across < q) continue;  // drawn from there
       canvas.line({corners[(k + 1) % 3], corners[(k + 2) % 3]}, across.valid() ? line_width : 2 * line_width,
-                  solid(mix(palette::ink, palette::white, 0.2)));
+                  solid(mix(palette::ink, palette::white, across.valid() ? 0.4 : 0.1)));
     }
   }
 }
