@@ -56,22 +56,6 @@ std::uint16_t stored(double value) {
   return static_cast<std::uint16_t>(257 * std::lround(255 * std::clamp(value, 0.0, 1.0)));
 }
 
-/// Ranks by depth among the faces over one surface face.
-std::map<PatchFaceId, std::uint32_t> find_sheets(const DecalMap& map) {
-  std::map<FaceId, std::vector<PatchFaceId>> over;
-  for (const PatchFaceId f : ids<PatchFaceId>(map.patch.faces.size()))
-    if (map.patch.faces[f].mesh_face.valid()) over[map.patch.faces[f].mesh_face].push_back(f);
-  std::map<PatchFaceId, std::uint32_t> sheets;
-  for (auto& [face, stack] : over) {
-    if (stack.size() < 2) continue;
-    std::stable_sort(stack.begin(), stack.end(),
-                     [&](PatchFaceId a, PatchFaceId b) { return map.depth[a] < map.depth[b]; });
-    for (std::size_t rank = 0; rank < stack.size(); ++rank)
-      sheets[stack[rank]] = static_cast<std::uint32_t>(rank);
-  }
-  return sheets;
-}
-
 }  // namespace
 
 Result<std::vector<BakeTarget>> plan_bake(const SolvedJob& job, Document& document) {
@@ -146,7 +130,6 @@ Transfer lay_out_transfer(const SolvedJob& job, const BakeTarget& target, std::s
 
   std::map<std::uint32_t, std::vector<char>> own;  // by part: the triangles that carry the decal
   for (const std::uint32_t part : target.parts) own[part].resize(job.model.parts[part].triangles.size(), 0);
-  const auto sheets = find_sheets(map);
   for_textured_faces(decal, [&](PatchFaceId f, const ModelSurface::Source& source) {
     const auto part = own.find(source.part);
     if (part == own.end()) return;
@@ -157,10 +140,12 @@ Transfer lay_out_transfer(const SolvedJob& job, const BakeTarget& target, std::s
       const PatchVertexId vertex = map.patch.faces[f].vertices[k];
       face.plane[k] = map.plane[vertex];
       face.image[k] = map.image[vertex];
+      if (map.groups == 1) continue;
+      const auto influence = map.influence.begin() + std::ptrdiff_t{vertex.value} * map.groups;
+      transfer.influence.insert(transfer.influence.end(), influence, influence + map.groups);
     }
     face.linear = map.linear[f] != 0;
-    const auto sheet = sheets.find(f);
-    face.sheet = sheet == sheets.end() ? 0 : sheet->second;
+    face.sheet = map.sheet[f];
     transfer.faces.push_back(face);
   });
   for (const auto& [part, triangles] : own)

@@ -86,6 +86,7 @@ DecalJob decal_of(const json& decal, const std::filesystem::path& folder) {
   out.output = decal.value("output", "bake") == "overlay" ? DecalOutput::overlay : DecalOutput::bake;
   if (decal.contains("offset")) out.offset = decal["offset"].get<double>();
   out.energy = decal.value("energy", "isometric") == "conformal" ? Energy::conformal : Energy::isometric;
+  out.overlap = decal.value("overlap", "stop") == "allow" ? Overlap::allow : Overlap::stop;
   return out;
 }
 

@@ -51,6 +51,7 @@ struct DecalJob {
   DecalOutput output = DecalOutput::bake;
   std::optional<double> offset;  ///< Of an overlay, scene units, >= 0; left out: default_offset().
   Energy energy = Energy::isometric;
+  Overlap overlap = Overlap::stop;
 };
 
 /// A job file, version 1.

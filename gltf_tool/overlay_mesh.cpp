@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <span>
 #include <utility>
+#include <vector>
 
 namespace applique {
 namespace {
@@ -20,8 +22,15 @@ struct Builder {
   std::vector<Vec3> positions;
   std::vector<Vec3> normals;  ///< Any length.
   std::vector<Vec2> plane;
-  std::vector<Vec2> image;  ///< Plane units.
-  std::vector<Triangle> triangles;
+  std::vector<Vec2> image;   ///< Plane units.
+  std::vector<double> lift;  ///< Above the surface, in offsets.
+  std::size_t groups = 0;    ///< Of the features; 0 where there is one, whose influence is nobody's concern.
+  std::vector<double> influence;    ///< [vertex * groups + group].
+  std::vector<Triangle> triangles;  ///< In the order in which they are to be drawn.
+
+  [[nodiscard]] double influence_at(std::uint32_t vertex, std::size_t group) const {
+    return influence[vertex * groups + group];
+  }
 
   /// A vertex on an edge, t of the way from a to b; its image is exact only after the caller set it.
   std::uint32_t add_between(std::uint32_t a, std::uint32_t b, double t) {
@@ -29,17 +38,25 @@ struct Builder {
     normals.emplace_back((1 - t) * normals[a].normalized() + t * normals[b].normalized());
     plane.push_back((1 - t) * plane[a] + t * plane[b]);
     image.push_back((1 - t) * image[a] + t * image[b]);
+    lift.push_back((1 - t) * lift[a] + t * lift[b]);
+    for (std::size_t g = 0; g < groups; ++g)
+      influence.push_back((1 - t) * influence_at(a, g) + t * influence_at(b, g));
     return static_cast<std::uint32_t>(positions.size() - 1);
   }
 };
 
 Builder gather_faces(const Model& model, const SolvedDecal& decal) {
   const DecalMap& map = decal.map;
+  std::vector<PatchFaceId> shown;
+  for (const PatchFaceId f : ids<PatchFaceId>(map.patch.faces.size()))
+    if (map.textured[f] != 0 && map.patch.faces[f].mesh_face.valid()) shown.push_back(f);
+  std::stable_sort(shown.begin(), shown.end(),
+                   [&](PatchFaceId a, PatchFaceId b) { return map.sheet[a] < map.sheet[b]; });
   Builder mesh;
+  if (map.groups > 1) mesh.groups = map.groups;
   IdVector<PatchVertexId, std::uint32_t> index(map.patch.vertices.size(), ~0U);
-  for (const PatchFaceId f : ids<PatchFaceId>(map.patch.faces.size())) {
+  for (const PatchFaceId f : shown) {
     const PatchFace& face = map.patch.faces[f];
-    if (map.textured[f] == 0 || !face.mesh_face.valid()) continue;
     const auto& source = decal.surface->source(face.mesh_face);
     const ModelPart& part = model.parts[source.part];
     const auto corners = decal.surface->mesh.corners(face.mesh_face);
@@ -53,8 +70,12 @@ Builder gather_faces(const Model& model, const SolvedDecal& decal) {
         mesh.normals.emplace_back(Vec3::Zero());
         mesh.plane.push_back(map.plane[vertex]);
         mesh.image.push_back(map.image[vertex]);
+        mesh.lift.push_back(0);
+        for (std::size_t g = 0; g < mesh.groups; ++g)
+          mesh.influence.push_back(map.influence[vertex.value * mesh.groups + g]);
       }
       triangle[k] = index[vertex];
+      mesh.lift[triangle[k]] = 1 + map.sheet[f];  // The highest comes last.
       mesh.normals[triangle[k]] += area * part.normals[part.triangles[source.triangle][k]];
     }
     mesh.triangles.push_back(triangle);
@@ -85,11 +106,14 @@ class Divider {
   [[nodiscard]] bool deviates(const Triangle& t, const std::array<double, 3>& weights) const {
     Vec2 plane = 0;
     Vec2 image = 0;
+    std::vector<double> influence(mesh_->groups, 0);
     for (std::size_t k = 0; k < 3; ++k) {
       plane += weights[k] * mesh_->plane[t[k]];
       image += weights[k] * mesh_->image[t[k]];
+      for (std::size_t g = 0; g < mesh_->groups; ++g)
+        influence[g] += weights[k] * mesh_->influence_at(t[k], g);
     }
-    return std::abs((*warp_)(plane)-image) > max_deviation_;
+    return std::abs((*warp_)(plane, influence) - image) > max_deviation_;
   }
 
   [[nodiscard]] bool edge_deviates(const Triangle& t, std::size_t a, std::size_t b) const {
@@ -106,7 +130,7 @@ class Divider {
     const auto [middle, fresh] = middles_.try_emplace(edge_between(a, b));
     if (!fresh) return;
     middle->second = mesh_->add_between(a, b, 0.5);
-    mesh_->image.back() = (*warp_)(mesh_->plane.back());
+    mesh_->image.back() = (*warp_)(mesh_->plane.back(), std::span(mesh_->influence).last(mesh_->groups));
   }
 
   void mark(const Triangle& t) {
@@ -233,7 +257,7 @@ OverlayMesh compact(const Builder& mesh, const ImageFrame& frame, double offset)
         const double length = mesh.normals[v].norm();
         const Vec3 normal = length > 0 ? Vec3(mesh.normals[v] / length) : Vec3::UnitZ();
         const Pixel pixel = frame.to_pixel(mesh.image[v]);
-        out.positions.emplace_back(mesh.positions[v] + offset * normal);
+        out.positions.emplace_back(mesh.positions[v] + offset * mesh.lift[v] * normal);
         out.normals.push_back(normal);
         out.uvs.push_back({pixel.x / frame.width, pixel.y / frame.height});
       }

@@ -85,7 +85,9 @@ Json decal_of(const SolvedDecal& decal, const std::optional<TexelDensity>& densi
   out["patch"] = {{"triangles", map.patch.faces.size()},
                   {"textured_triangles", textured},
                   {"vertices", map.patch.vertices.size()},
-                  {"iterations", map.solves}};
+                  {"iterations", map.solves},
+                  {"sheets", map.sheets},
+                  {"groups", map.groups}};
   out["features"] = features_of(decal);
   out["flipped"] = {{"embedding", quality.flipped_plane}, {"image", quality.flipped_image}};
   out["stretch"] = {{"l2", finite(quality.l2_stretch)}, {"linf", finite(quality.linf_stretch)}};

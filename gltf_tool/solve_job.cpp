@@ -139,6 +139,7 @@ Result<void> solve_geometry(const Model& model, SurfaceCache& surfaces, SolvedDe
 
   SolveOptions options;
   options.energy = decal.job.energy;
+  options.overlap = decal.job.overlap;
   if (traced) options.trace = &decal.trace;
   APPLIQUE_TRY(decal.map, of_decal(decal.job, solve_decal(entry->surface->mesh, input, options)));
   decal.features = std::move(input.features);

@@ -1,5 +1,6 @@
 // Which face owns each texel: one workgroup per job (a triangle over a block). Edge functions in integers, scaled so
-// that they are exact; the largest key wins. Foreign triangles run in a later dispatch and only leave their mark.
+// that they are exact; the largest key wins. Foreign triangles and those of other sheets run in a later dispatch and only
+// leave their mark.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #include "transfer_types.h"
@@ -19,7 +20,7 @@ void main() {
   if (any(greaterThanEqual(texel, constants.region_size))) return;
   uint index = uint(texel.y * constants.region_size.x + texel.x);
   uint key = jobs[job].key;
-  if (key == foreign_bit) {
+  if ((key & key_mask) == 0u) {
     atomicOr(owners[index], key);
   } else {
     atomicMax(owners[index], key);

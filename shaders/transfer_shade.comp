@@ -5,8 +5,9 @@
 #include "transfer_types.h"
 
 layout(local_size_x = 8, local_size_y = 8) in;
-// Without it the code of the warp is compiled away.
+// Without them the code of the warp, and that of its groups, is compiled away.
 layout(constant_id = 0) const bool has_warp = false;
+layout(constant_id = 1) const uint groups = 1u;
 
 layout(push_constant) uniform Constants { TransferConstants constants; };
 layout(std430, set = 0, binding = 0) readonly buffer Owners { uint owners[]; };
@@ -22,8 +23,8 @@ layout(std430, set = 0, binding = 6) buffer Outcome {
   uint padding;
   vec2 samples[];
 };
-layout(std430, set = 0, binding = 8) readonly buffer Points { vec2 points[]; };  // Of refined faces, pixels.
-// Pairs as (i, j), then by stage the features' positions, then by stage the pairs' (lambda, offset).
+layout(std430, set = 0, binding = 8) readonly buffer Points { vec2 points[]; };  // Of the faces' grids.
+// Pairs as (i, j), then by stage the features' (position, group), then by stage the pairs' (lambda, offset).
 #ifdef LARGE_WARP
 layout(std430, set = 0, binding = 9) readonly buffer LargeWarp { vec4 warp_table[]; };
 #endif
@@ -36,6 +37,26 @@ layout(std140, set = 0, binding = 7) uniform Tables {
 
 vec2 complex_product(vec2 a, vec2 b) { return vec2(a.x * b.x - a.y * b.y, a.x * b.y + a.y * b.x); }
 
+float shares[groups];  // By group: its influence at the texel, ramped.
+
+// As influence_ramp in warp.cpp.
+float influence_ramp(float influence) {
+  float threshold = min(0.05, 0.5 / float(groups));
+  return smoothstep(threshold, 1.0 - threshold, influence);
+}
+
+// Squared distance to a feature, divided by its share: out of reach where it has none, but of a square that is finite.
+float remoteness(vec2 p, uint feature) {
+  vec2 d = p - warp_table[feature].xy;
+  float squared = dot(d, d);
+  if (groups > 1u) {
+    const float out_of_reach = 1e18;
+    float share = shares[floatBitsToUint(warp_table[feature].z)];
+    return share > 0.0 ? min(squared / share, out_of_reach) : out_of_reach;
+  }
+  return squared;
+}
+
 // Design §5.2; weights as in warp.cpp.
 vec2 velocity(vec2 p, uint stage) {
   uint positions = constants.pairs + stage * constants.features;
@@ -43,8 +64,7 @@ vec2 velocity(vec2 p, uint stage) {
   uint nearest_feature = 0u;
   float nearest_squared = 0.0;
   for (uint k = 0u; k < constants.features; ++k) {
-    vec2 d = p - warp_table[positions + k].xy;
-    float squared = dot(d, d);
+    float squared = remoteness(p, positions + k);
     if (k == 0u || squared < nearest_squared) {
       nearest_feature = k;
       nearest_squared = squared;
@@ -54,9 +74,7 @@ vec2 velocity(vec2 p, uint stage) {
   float total = 0.0;
   for (uint q = 0u; q < constants.pairs; ++q) {
     uvec2 pair = floatBitsToUint(warp_table[q].xy);
-    vec2 di = p - warp_table[positions + pair.x].xy;
-    vec2 dj = p - warp_table[positions + pair.y].xy;
-    float si = dot(di, di), sj = dot(dj, dj);
+    float si = remoteness(p, positions + pair.x), sj = remoteness(p, positions + pair.y);
     float weight = pair.x == nearest_feature   ? 1.0 / sj
                    : pair.y == nearest_feature ? 1.0 / si
                                                : nearest_squared / (si * sj);
@@ -82,8 +100,8 @@ vec2 warp(vec2 p) {
   return p;
 }
 
-// Between the points of a refined face's grid: `place` in its steps. Beyond the face, its outermost cells go on.
-vec2 refined(uint first, int cells, vec2 place) {
+// Between the points of a face's grid: `place` in its steps. Beyond the face, its outermost cells go on.
+vec2 in_grid(uint first, int cells, vec2 place) {
   int j = clamp(int(floor(place.y)), 0, cells - 1);
   int i = clamp(int(floor(place.x)), 0, cells - 1 - j);
   vec2 f = place - vec2(i, j);
@@ -180,9 +198,17 @@ void main() {
   vec2 d = vec2(((face.flags & face_clamped) != 0u ? seed : texel) - face.texel);
   vec2 place = face.value + face.dx * d.x + face.dy * d.y;
   if (has_warp && (face.flags & face_warped) != 0u) {
+    if (groups > 1u) {
+      for (uint g = 0u; g < groups; g += 2u) {
+        vec2 influence = in_grid(face.first_point + 3u + g / 2u * 3u, 1, place);
+        shares[g] = influence_ramp(influence.x);
+        if (g + 1u < groups) shares[g + 1u] = influence_ramp(influence.y);
+      }
+      place = in_grid(face.first_point, 1, place);
+    }
     place = constants.half_size + vec2(1.0, -1.0) * constants.pixels_per_unit * warp(place);
   }
-  if (face.flags >= face_cells) place = refined(face.first_point, int(face.flags / face_cells), place);
+  if (face.flags >= face_cells) place = in_grid(face.first_point, int(face.flags / face_cells), place);
   int index = work.y * constants.work_size.x + work.x;
   if (constants.keep_samples != 0u && seed == texel) samples[index] = vec2(face.pixel) + place;
 

@@ -21,11 +21,14 @@ using vec4 = std::array<float, 4>;
 
 APPLIQUE_CONST uint block_size = 8u;            // Texels along a block's edge; the workgroup of all passes.
 APPLIQUE_CONST uint foreign_bit = 0x80000000u;  // Owner: a foreign triangle covers the texel.
-APPLIQUE_CONST uint key_mask = 0x7fffffffu;     // Owner: 1 + the placement, 0 for none.
+APPLIQUE_CONST uint sheet_bit = 0x40000000u;    // Owner: another sheet of the decal covers the texel.
+APPLIQUE_CONST uint key_mask = 0x3fffffffu;     // Owner: 1 + the placement, 0 for none.
 APPLIQUE_CONST uint max_levels = 24u;
 APPLIQUE_CONST uint warp_table_capacity = 992u;  // vec4s; with the levels just under the 16 KiB of every device.
 
-APPLIQUE_CONST uint face_warped = 1u;   // `value` is a plane point that the warp carries to the image.
+// `value` is a plane point that the warp carries to the image or, where features have groups, a place in a grid of one
+// cell, with the plane points of its corners and then, for every two groups, their influence at the corners.
+APPLIQUE_CONST uint face_warped = 1u;
 APPLIQUE_CONST uint face_clamped = 2u;  // Too thin to extend: its gutter repeats its nearest texel.
 APPLIQUE_CONST uint face_cells = 4u;    // Times the cells along a side of a refined face: `value` is a place in its grid.
 
@@ -42,7 +45,7 @@ struct RasterJob {
 };
 
 // Where a face takes the texels: value + dx * (x - texel.x) + dy * (y - texel.y), in pixels relative to `pixel` or,
-// where warped, in the plane, or, where refined, in steps of its grid.
+// where warped, in the plane, or, where it has a grid, in steps of that.
 struct FaceMap {
   ivec2 texel;
   ivec2 pixel;
@@ -53,7 +56,7 @@ struct FaceMap {
   float level;
   uint probes;
   uint flags;
-  uint first_point;  // Of the grid, where refined.
+  uint first_point;  // Of the grid, where there is one.
 };
 
 struct TransferConstants {

@@ -4,25 +4,38 @@
 #include <chrono>
 #include <cmath>
 #include <set>
+#include <unordered_map>
 
 #include <fmt/format.h>
 
 #include "applique/base/parallel.h"
-#include "applique/base/predicates.h"
+#include "applique/decal_input.h"
 #include "applique/embed/align.h"
+#include "applique/embed/self_overlap.h"
+#include "applique/patch/depth.h"
 #include "applique/patch/seed.h"
+#include "applique/patch/sheets.h"
+#include "applique/region/clusters.h"
+#include "applique/region/influence.h"
 #include "applique/warp/build_warp.h"
 
 namespace applique {
 namespace {
 
-constexpr std::uint32_t cover_limit = 1;      // one sheet
+constexpr std::uint32_t most_sheets = 16;
+constexpr double most_patch_area = 4;         // of a patch that may cover more, times the region's
 constexpr double linear_tolerance_px = 0.02;  // §5.1 of the design
 constexpr double most_coverage = 1.005;       // beyond it the map overlaps itself
 constexpr double least_coverage = 0.01;       // below it the result is of no use
 constexpr double high_stretch = 3;
-constexpr double on_contour = 1e-9;  // plane units
-constexpr double coincident = 1e-6;  // of the region's diameter
+#ifdef APPLIQUE_CHECK_INVARIANTS
+constexpr bool always_check_patch = true;
+#else
+constexpr bool always_check_patch = false;
+#endif
+constexpr int trial_solves = 6;     // after them, groups stay
+constexpr int most_refreshes = 8;   // of the vertices' influence
+constexpr double refreshed = 1e-5;  // of the region's diameter: what a last refresh moves
 
 /// Adds the time until its end to a counter, in seconds.
 class StageTimer {
@@ -38,78 +51,6 @@ class StageTimer {
   double& total_;
   std::chrono::steady_clock::time_point start_;
 };
-
-std::string feature_name(const DecalInput& input, std::size_t k) {
-  return fmt::format("feature {} at ({:.1f}, {:.1f})", k, input.features[k].image.x,
-                     input.features[k].image.y);
-}
-
-std::string join(const std::vector<std::string>& names) {
-  std::string text;
-  for (std::size_t i = 0; i < names.size(); ++i)
-    text += (i == 0 ? "" : i + 1 == names.size() ? " and " : ", ") + names[i];
-  return text;
-}
-
-Result<void> check_input(const SurfaceMesh& surface, const DecalInput& input,
-                         const std::vector<Vec2>& targets) {
-  const std::string prefix = fmt::format("decal '{}': ", input.name);
-  if (input.features.empty())
-    return fail(ErrorCode::feature_place_invalid,
-                prefix + "has no features; pin at least one point of the image");
-  const double pixels = input.region.frame().pixels_per_unit();
-  for (std::size_t k = 0; k < input.features.size(); ++k) {
-    // A feature on a slanted edge of the contour may lie outside by rounding.
-    if (!input.region.contains(targets[k]) && input.region.signed_distance(targets[k]) < -on_contour)
-      return fail(
-          ErrorCode::feature_outside_region,
-          fmt::format("{}{}: outside the contour by {:.1f} px; move it inside or widen the region", prefix,
-                      feature_name(input, k), -input.region.signed_distance(targets[k]) * pixels));
-    for (std::size_t j = 0; j < k; ++j) {
-      if (std::abs(targets[k] - targets[j]) < coincident * input.region.diameter())
-        return fail(ErrorCode::features_coincide,
-                    fmt::format("{}{} and {} are on one spot of the image; remove one of them", prefix,
-                                feature_name(input, j), feature_name(input, k)));
-      const Vec3 a = position_of(surface, input.features[j].surface),
-                 b = position_of(surface, input.features[k].surface);
-      const auto corners = surface.corners(input.features[k].surface.face);
-      const double size = (corners[1] - corners[0]).norm() + (corners[2] - corners[0]).norm();
-      if ((a - b).norm() <= coincident * size)
-        return fail(ErrorCode::features_coincide,
-                    fmt::format("{}{} and {} are on one spot of the surface; remove one of them", prefix,
-                                feature_name(input, j), feature_name(input, k)));
-    }
-  }
-  if (input.features.size() == 1 && !(input.lone && input.lone->width > 0))
-    return fail(
-        ErrorCode::size_missing,
-        prefix +
-            "a single feature fixes neither size nor direction: give \"size\" (the image's width in scene "
-            "units, over 0) and \"up\" (a direction), or pin a second feature");
-  std::vector<std::vector<std::string>> parts;
-  std::vector<std::uint32_t> component;
-  for (std::size_t k = 0; k < input.features.size(); ++k) {
-    const std::uint32_t c = surface.component[surface.faces[input.features[k].surface.face][0]];
-    const auto part =
-        static_cast<std::size_t>(std::find(component.begin(), component.end(), c) - component.begin());
-    if (part == component.size()) {
-      component.push_back(c);
-      parts.emplace_back();
-    }
-    parts[part].push_back(feature_name(input, k));
-  }
-  if (parts.size() > 1) {
-    std::string text;
-    for (std::size_t i = 0; i < parts.size(); ++i) text += (i == 0 ? "" : " from ") + join(parts[i]);
-    return fail(
-        ErrorCode::features_disconnected,
-        fmt::format(
-            "{}the features lie on {} parts of the model that are not connected: {}; place them on one "
-            "connected part, or make a decal for each",
-            prefix, parts.size(), text));
-  }
-  return {};
-}
 
 /// The similarity that gives a lone feature's neighbourhood the wanted size and direction (§3.3 of the
 /// design).
@@ -157,14 +98,18 @@ Result<Similarity> lone_alignment(const SurfaceMesh& surface, const DecalInput& 
   return Similarity{scale, target - scale * feature};
 }
 
-/// The warp at many places, on all cores.
-std::vector<Vec2> warp_all(const Warp& warp, const std::vector<Vec2>& places) {
+/// The warp at many places, on all cores; `influence` by place and group.
+std::vector<Vec2> warp_all(const Warp& warp, const std::vector<Vec2>& places,
+                           const std::vector<double>& influence) {
   if (warp.steps == 0) return places;
   constexpr std::size_t batch = 256;
+  const std::size_t groups = warp.groups;
   std::vector<Vec2> warped(places.size());
   parallel_for(static_cast<int>((places.size() + batch - 1) / batch), [&](int i) {
     const std::size_t first = batch * static_cast<std::size_t>(i);
-    for (std::size_t k = first; k < std::min(first + batch, places.size()); ++k) warped[k] = warp(places[k]);
+    for (std::size_t k = first; k < std::min(first + batch, places.size()); ++k)
+      warped[k] =
+          groups == 1 ? warp(places[k]) : warp(places[k], std::span(influence).subspan(k * groups, groups));
   });
   return warped;
 }
@@ -190,13 +135,14 @@ class Solver {
 
  private:
   Result<void> solve() {
-    APPLIQUE_CHECK(check_input(surface_, input_, targets_));
+    APPLIQUE_CHECK(check_input(surface_, input_, targets_, options_.overlap));
     {
       StageTimer stage(map_.times.graph);
       map_.graph = build_feature_graph(input_.region, targets_);
     }
     APPLIQUE_TRY(Seed seed, make_seed());
-    Growth growth(seed.disc, std::move(seed.feature_faces), input_.region, cover_limit);
+    for (const Vec2 z : seed.image) points_.push_back({Vec2(), z});
+    Growth growth(seed.disc, std::move(seed.feature_faces), input_.region, seed.sheets);
     APPLIQUE_CHECK(grow(seed.disc, growth));
     finish(seed.disc, growth);
     if (map_.quality.coverage < least_coverage)
@@ -211,10 +157,11 @@ class Solver {
 
   Result<Seed> make_seed() {
     StageTimer stage(map_.times.seed);
-    std::vector<SurfacePoint> places;
-    for (const Feature& feature : input_.features) places.push_back(feature.surface);
-    auto seed = build_seed(bridged_, places, map_.graph.tree, cover_limit);
-    if (seed && options_.trace != nullptr) *options_.trace = {seed->paths, {}};
+    std::vector<SeedFeature> features;
+    for (std::size_t k = 0; k < targets_.size(); ++k)
+      features.push_back({input_.features[k].surface, targets_[k]});
+    auto seed = build_seed(bridged_, features, map_.graph.tree);
+    if (seed && options_.trace != nullptr) options_.trace->paths = seed->paths;
     if (seed) return std::move(*seed);
     const auto [i, j] = seed.error().disconnected;
     return fail(ErrorCode::features_disconnected,
@@ -238,13 +185,13 @@ class Solver {
       plane = std::move(embedding.plane);
       for (std::size_t k = 0; k < features.size(); ++k)
         features[k] = interpolate(disc, growth.feature_faces()[k], input_.features[k].surface, plane);
+      for (std::size_t v = 0; v < plane.size(); ++v) points_[PatchVertexId(v)].plane = plane[v];
+      choose_groups(disc, features);
       APPLIQUE_CHECK(align(disc, growth, features, plane));
     }
     StageTimer stage(map_.times.warp);
-    built_ = build_warp(features, targets_, map_.graph, probes(features));
-    points_.clear();
-    const std::vector<Vec2> image = warp_all(built_.warp, plane);
-    for (std::size_t v = 0; v < plane.size(); ++v) points_.push_back({plane[v], image[v]});
+    for (std::size_t v = 0; v < plane.size(); ++v) points_[PatchVertexId(v)].plane = plane[v];
+    warp_points(plane, features);
     return {};
   }
 
@@ -255,20 +202,61 @@ class Solver {
       APPLIQUE_TRY(similarity, lone_alignment(surface_, input_, disc, growth.feature_faces()[0], features[0],
                                               targets_[0], plane));
     } else {
-      if (is_mirrored(features, targets_))
-        return fail(
-            ErrorCode::features_mirrored,
-            fmt::format(
-                "decal '{}': the features {} run one way round in the image and the other way round on "
-                "the surface, so that the image would have to be mirrored; swap the places of left and "
-                "right, or mirror the image",
-                input_.name, feature_range()));
-      similarity = fit_similarity(features, targets_);
+      // Where the image lies over itself only the graph's triangles tell.
+      mirrored_ = (groups_.count == 1 || !map_.graph.triangles.empty()) &&
+                  is_mirrored(features, targets_, map_.graph.triangles);
+      similarity = groups_.count > 1 ? fit_by_edges(features, targets_, map_.graph.tree)
+                                     : fit_similarity(features, targets_);
     }
     scale_ = std::abs(similarity.scale);
     for (Vec2& z : features) z = similarity(z);
     for (Vec2& z : plane) z = similarity(z);
     return {};
+  }
+
+  /// Features move the image in groups while it lies over itself in the plane (§3.6 of the design). The first
+  /// embeddings are of thin patches and may mislead; later on there is no way back, so that the growth ends.
+  void choose_groups(const ImmersedDisc& disc, const std::vector<Vec2>& features) {
+    const bool graph = graph_overlaps(features, map_.graph);
+    if (!graph && !overlaps_in_plane(disc, points_, input_.region)) {
+      if (map_.solves <= trial_solves) groups_ = {};
+      return;
+    }
+    if (groups_.count > 1 && map_.solves > trial_solves) return;
+    if (clusters_.empty()) clusters_ = cluster_features(input_.region, targets_, map_.graph);
+    const bool one = std::all_of(clusters_.begin(), clusters_.end(), [](std::uint32_t g) { return g == 0; });
+    const auto groups = cut_overlapping_groups(clusters_, features, map_.graph, one && !graph);
+    if (groups == groups_.of) return;
+    influence_field_.emplace(input_.region, targets_, map_.graph, groups);
+    groups_ = groups_of(*influence_field_, groups);
+  }
+
+  /// The warp of the embedding, and where it takes the vertices. With groups, a vertex is under the influence
+  /// that its place in the image is under, which hangs on where the warp takes it: fixed-point steps from the
+  /// last place (§3.7 of the design).
+  void warp_points(const std::vector<Vec2>& plane, const std::vector<Vec2>& features) {
+    find_influence();
+    built_ = build_warp(features, targets_, map_.graph, probes(features), groups_);
+    const int refreshes = groups_.count == 1 ? 0 : most_refreshes;
+    for (int refresh = 0; refresh <= refreshes; ++refresh) {
+      if (refresh > 0) find_influence();
+      const std::vector<Vec2> image = warp_all(built_.warp, plane, influence_);
+      double moved = 0;
+      for (std::size_t v = 0; v < image.size(); ++v) {
+        Vec2& at = points_[PatchVertexId(v)].image;
+        moved = std::max(moved, std::abs(image[v] - at));
+        at = image[v];
+      }
+      if (moved < refreshed * input_.region.diameter()) break;
+    }
+  }
+
+  void find_influence() {
+    if (groups_.count == 1) return;
+    influence_.resize(points_.size() * groups_.count);
+    for (PatchVertexId v : ids<PatchVertexId>(points_.size()))
+      influence_field_->at(points_[v].image,
+                           std::span(influence_).subspan(v.value * groups_.count, groups_.count));
   }
 
   [[nodiscard]] std::string feature_range() const {
@@ -282,20 +270,29 @@ class Solver {
     return z;
   }
 
-  /// Places between the features, where the warp bends most.
-  [[nodiscard]] std::vector<Vec2> probes(const std::vector<Vec2>& features) const {
-    std::vector<Vec2> probes;
+  /// Places between the features, where the warp bends most; with groups, vertices all over the patch.
+  [[nodiscard]] std::vector<WarpProbe> probes(const std::vector<Vec2>& features) const {
+    std::vector<WarpProbe> probes;
+    if (groups_.count > 1) {
+      const std::size_t stride = std::max<std::size_t>(1, points_.size() / 64);
+      for (std::size_t v = 0; v < points_.size(); v += stride) {
+        const auto influence = std::span(influence_).subspan(v * groups_.count, groups_.count);
+        probes.push_back({points_[PatchVertexId(v)].plane, {influence.begin(), influence.end()}});
+      }
+      return probes;
+    }
     for (const auto& [i, j] : map_.graph.planar)
       for (const double t : {0.25, 0.5, 0.75})
-        probes.push_back(features[i] + t * (features[j] - features[i]));
+        probes.push_back({features[i] + t * (features[j] - features[i]), {}});
     const std::vector<Vec2>& polygon = input_.region.polygon();
     const std::size_t stride = std::max<std::size_t>(1, polygon.size() / 16);
-    for (std::size_t i = 0; i < polygon.size(); i += stride) probes.push_back(polygon[i]);
+    for (std::size_t i = 0; i < polygon.size(); i += stride) probes.push_back({polygon[i], {}});
     return probes;
   }
 
   /// The loop of §2.6 of the design: parameterize, peel, grow, until the region is covered. The conformal
-  /// map, which costs a third of the isometric one, does while the patch is far from its final size.
+  /// map, which costs a third of the isometric one, does while the patch is far from its final size. Where
+  /// the region would meet itself it may have to go on over itself, one sheet more at a time.
   Result<void> grow(ImmersedDisc& disc, Growth& growth) {
     Energy energy = Energy::conformal;
     bool padded = false;
@@ -309,21 +306,47 @@ class Solver {
       const std::size_t added =
           growth.grow(points_, inside, scale_, {}) + growth.fill_pockets(points_, inside, scale_);
       if (added == 0 && peeled == 0) {
+        // Thin patches mislead: what they say of the features' order counts once the patch is grown.
+        if (mirrored_)
+          return fail(
+              ErrorCode::features_mirrored,
+              fmt::format(
+                  "decal '{}': the features {} run one way round in the image and the other way round on "
+                  "the surface, so that the image would have to be mirrored; swap the places of left and "
+                  "right, or mirror the image",
+                  input_.name, feature_range()));
         if (energy != options_.energy) {
           energy = options_.energy;
           continue;
         }
         if (padded) break;
-        growth.pad(points_);
-        padded = true;
+        if (may_cover_more(disc, growth)) {
+          growth.set_cover_limit(growth.cover_limit() + 1);
+          if (growth.grow(points_, inside, scale_, {}) > 0) energy = Energy::conformal;
+        } else {
+          growth.pad(points_);
+          padded = true;
+        }
       }
       growth.compact(points_);
-#ifdef APPLIQUE_CHECK_INVARIANTS
-      APPLIQUE_ASSERT(disc.broken_invariant().empty());
-#endif
+      APPLIQUE_ASSERT(!(always_check_patch || options_.check_patch) || disc.broken_invariant().empty());
     }
     map_.status = growth.coverage(points_);
     return {};
+  }
+
+  /// Whether the region stops at itself and may go on, unless the patch has run out of all proportion.
+  [[nodiscard]] bool may_cover_more(const ImmersedDisc& disc, const Growth& growth) const {
+    if (options_.overlap == Overlap::stop || growth.cover_limit() >= most_sheets ||
+        growth.coverage(points_) != Coverage::clipped_by_cover)
+      return false;
+    double area = 0;
+    for (const PatchFace& face : disc.faces()) {
+      const auto& v = face.vertices;
+      const Vec2 origin = points_[v[0]].plane;
+      area += 0.5 * cross(points_[v[1]].plane - origin, points_[v[2]].plane - origin);
+    }
+    return area < most_patch_area * input_.region.area();
   }
 
   /// The disc as a patch over the surface alone, without what bridges its holes.
@@ -352,8 +375,13 @@ class Solver {
       step.features.push_back(
           interpolate(disc, growth.feature_faces()[k], input_.features[k].surface, step.plane.raw()));
     step.contour = divided_contour();
-    if (built_.warp.steps > 0)
-      for (Vec2& z : step.contour) z = built_.warp.backward(z);
+    if (built_.warp.steps > 0) {
+      std::vector<double> influence(groups_.count);
+      for (Vec2& z : step.contour) {
+        if (groups_.count > 1) influence_field_->at(z, influence);
+        z = built_.warp.backward(z, influence);
+      }
+    }
     options_.trace->steps.push_back(std::move(step));
   }
 
@@ -383,18 +411,40 @@ class Solver {
       map_.image.push_back(point.image);
     }
     map_.warp = std::move(built_.warp);
-    map_.depth.resize(map_.patch.faces.size(), 0);
-    map_.influence.assign(map_.patch.vertices.size(), 1);
+    map_.groups = groups_.count;
+    map_.feature_groups = groups_.of;
+    map_.influence = groups_.count == 1 ? std::vector<double>(map_.patch.vertices.size(), 1) : influence_;
+    order_sheets(growth);
     mark_linear_faces(growth);
     map_.quality = measure_quality(surface_, map_.patch, map_.plane, map_.image, map_.textured, map_.warp,
-                                   input_.region);
+                                   input_.region, map_.influence);
     for (std::size_t k = 0; k < targets_.size(); ++k) {
+      const auto& corners = disc.faces()[growth.feature_faces()[k]].vertices;
+      const std::vector<double> influence =
+          map_.influence_at(corners, input_.features[k].surface.barycentric);
       const Vec2 at = map_.warp(
-          interpolate(disc, growth.feature_faces()[k], input_.features[k].surface, map_.plane.raw()));
+          interpolate(disc, growth.feature_faces()[k], input_.features[k].surface, map_.plane.raw()),
+          influence);
       map_.quality.feature_residual.push_back(std::abs(at - targets_[k]) *
                                               input_.region.frame().pixels_per_unit());
     }
     warn();
+  }
+
+  /// Depths are asked for only where the patch lies over itself.
+  void order_sheets(const Growth& growth) {
+    std::unordered_map<FaceId, std::uint32_t> cover;
+    for (const PatchFace& face : map_.patch.faces)
+      if (face.mesh_face.valid()) map_.sheets = std::max(map_.sheets, ++cover[face.mesh_face]);
+    map_.depth.resize(map_.patch.faces.size(), 0);
+    map_.sheet.resize(map_.patch.faces.size(), 0);
+    if (map_.sheets == 1) return;
+    std::vector<DepthFeature> features;
+    for (std::size_t k = 0; k < targets_.size(); ++k)
+      features.push_back({targets_[k], growth.feature_faces()[k], input_.features[k].depth});
+    FaceDepths depths = spread_depths(map_.patch, map_.image, features, map_.graph.tree);
+    map_.sheet = rank_sheets(map_.patch, depths);
+    map_.depth = std::move(depths.depth);
   }
 
   /// A face is linear when the warp at its edges' middles and its centroid agrees with interpolation, and no
@@ -409,6 +459,7 @@ class Solver {
       PatchFaceId face, across;
     };
     std::vector<Vec2> places;
+    std::vector<double> influence;
     std::vector<Test> tests;
     const auto test = [&](std::initializer_list<PatchVertexId> corners, PatchFaceId face,
                           PatchFaceId across) {
@@ -420,6 +471,11 @@ class Solver {
       }
       places.push_back(plane);
       tests.push_back({image, face, across});
+      for (std::uint32_t g = 0; g < map_.groups; ++g) {
+        double sum = 0;
+        for (PatchVertexId v : corners) sum += map_.influence[v.value * map_.groups + g] / n;
+        influence.push_back(sum);
+      }
     };
     for (PatchFaceId q : ids<PatchFaceId>(map_.patch.faces.size())) {
       const auto& [mesh_face, v, neighbours] = map_.patch.faces[q];
@@ -428,10 +484,16 @@ class Solver {
       for (int k = 0; k < 3; ++k) {
         const PatchFaceId across = neighbours[k];
         if (across.valid() && map_.textured[across] && across < q) continue;  // tested from there
-        test({v[(k + 1) % 3], v[(k + 2) % 3]}, q, across);
+        const PatchVertexId a = v[(k + 1) % 3], b = v[(k + 2) % 3];
+        test({a, b}, q, across);
+        // An influence that goes from 0 to 1 along the side is right in its middle.
+        if (map_.groups > 1) {
+          test({a, a, a, b}, q, across);
+          test({a, b, b, b}, q, across);
+        }
       }
     }
-    const std::vector<Vec2> exact = warp_all(map_.warp, places);
+    const std::vector<Vec2> exact = warp_all(map_.warp, places, influence);
     for (std::size_t i = 0; i < tests.size(); ++i) {
       if (std::abs(exact[i] - tests[i].image) <= tolerance) continue;
       map_.linear[tests[i].face] = false;
@@ -454,7 +516,10 @@ class Solver {
         break;
       case Coverage::clipped_by_cover:
         add("clipped_by_cover",
-            fmt::format("the region meets itself on the surface; {:.2f} % of it is shown", percent));
+            fmt::format("the region meets itself on the surface; {:.2f} % of it is shown{}", percent,
+                        options_.overlap == Overlap::stop
+                            ? "; \"overlap\": \"allow\" on the decal lets it go on over itself"
+                            : ""));
         break;
       case Coverage::clipped_closed:
         add("clipped_closed",
@@ -497,12 +562,26 @@ class Solver {
   std::vector<Vec2> targets_;  ///< Features in the image, plane units.
   PatchPoints points_;
   BuiltWarp built_;
+  bool mirrored_ = false;  ///< By the last embedding, the features run the other way round on the surface.
+  std::vector<std::uint32_t> clusters_;  ///< Group by feature, as the image has them; once asked for.
+  FeatureGroups groups_;
+  std::optional<InfluenceField> influence_field_;  ///< Of groups_, while there are several.
+  std::vector<double> influence_;                  ///< [vertex * groups + group], while there are several.
   EmbeddingRung rung_ = EmbeddingRung::conformal;
   double scale_ = 1;  ///< Of the alignment, plane units per scene unit.
   DecalMap map_;
 };
 
 }  // namespace
+
+std::vector<double> DecalMap::influence_at(const std::array<PatchVertexId, 3>& corners,
+                                           const std::array<double, 3>& barycentric) const {
+  std::vector<double> at(groups, 0);
+  for (int k = 0; k < 3; ++k)
+    for (std::uint32_t g = 0; g < groups; ++g)
+      at[g] += barycentric[k] * influence[corners[k].value * groups + g];
+  return at;
+}
 
 Result<DecalMap> solve_decal(const SurfaceMesh& surface, const DecalInput& input,
                              const SolveOptions& options) {

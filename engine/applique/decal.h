@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -38,10 +40,19 @@ struct DecalInput {
   std::optional<LoneFrame> lone;  ///< Needed with one feature, ignored with more.
 };
 
+/// Whether the image may lie over itself on the surface more often than the paths between the features do.
+enum class Overlap {
+  stop,   ///< Where the image would meet itself it ends, along a seam of contact.
+  allow,  ///< It goes on over itself.
+};
+
 struct SolveOptions {
   Energy energy = Energy::isometric;
+  Overlap overlap = Overlap::stop;
   int max_solves = 60;          ///< Embeddings before giving up.
   SolveTrace* trace = nullptr;  ///< Told what happened, when given.
+  bool check_patch =
+      false;  ///< Asserts the patch's invariants after every change; builds for debugging always do.
 };
 
 /// Seconds by stage.
@@ -57,17 +68,25 @@ struct DecalMap {
   Warp warp;                             ///< plane -> image, exact everywhere.
   IdVector<PatchFaceId, char> linear;    ///< The linear map stands for the warp (to 0.02 px).
   IdVector<PatchFaceId, char> textured;  ///< The face meets the region (and is no bridged hole).
-  IdVector<PatchFaceId, double> depth;   ///< Order of overlapping faces.
+  IdVector<PatchFaceId, double> depth;   ///< Of overlapping faces, from the features'; all 0 without overlap.
+  /// Rank of each patch face among those over its surface face, 0 = bottom.
+  IdVector<PatchFaceId, std::uint32_t> sheet;
   /// Weight of each group of features at each vertex, [vertex * groups + group]; they sum to 1. One group:
   /// all 1.
   std::uint32_t groups = 1;
   std::vector<double> influence;
+  std::vector<std::uint32_t> feature_groups;  ///< By feature; empty when there is one group.
+  std::uint32_t sheets = 1;                   ///< How often a surface face is covered at most.
   FeatureGraph graph;
   Coverage status = Coverage::not_converged;
   MapQuality quality;
   SolveTimes times;
   int solves = 0;
   std::vector<Warning> warnings;
+
+  /// The influence of each group at a place in a face: what the warp is to be told there.
+  [[nodiscard]] std::vector<double> influence_at(const std::array<PatchVertexId, 3>& corners,
+                                                 const std::array<double, 3>& barycentric) const;
 };
 
 /// Solves one decal: "method": "applique" (§2 to §6 of the design). Cost follows the patch, not the surface.

@@ -43,7 +43,7 @@ Agreement compare(GpuTransfer& gpu, const Transfer& transfer, const Image& textu
   agreement.samples = cpu_result.samples.size();
   for (std::size_t i = 0; i < agreement.samples; ++i) {
     const auto &a = gpu_result->samples[i], &b = cpu_result.samples[i];
-    if (a.x != b.x || a.y != b.y) {
+    if (a.x != b.x || a.y != b.y || a.sheet != b.sheet) {
       ADD_FAILURE() << "sample " << i << " is at another texel";
       return agreement;
     }
@@ -114,6 +114,38 @@ TEST_F(GpuTransferTest, RefinesCoarseFaces) {
     SCOPED_TRACE(seed);
     expect_agreement(compare(gpu, synthetic_transfer(seed, options).transfer, noise_texture(1, 400, 400)));
   }
+}
+
+TEST_F(GpuTransferTest, AgreesWhereTheRegionOverlapsItself) {
+  GpuTransfer gpu = GpuTransfer::create(device()).value();
+  for (unsigned seed = 1; seed <= 8; ++seed) {
+    SyntheticOptions options;
+    options.stacked = true;
+    options.sheets = 2 + static_cast<int>(seed) % 2;
+    options.groups = 2 + static_cast<int>(seed) / 2 % 2;
+    options.features = seed == 7 ? 18 : 3 * options.groups;  // 18: large tables.
+    options.grid = seed % 2 == 0 ? 40 : 3;                   // The warp at each texel; refined.
+    options.image = 200 + 100 * static_cast<int>(seed);
+    options.nonlinear = 0.7;
+    SyntheticTransfer synthetic = synthetic_transfer(seed, options);
+    synthetic.transfer.blend = static_cast<BlendMode>(seed % 3);
+    synthetic.transfer.opaque = seed % 4 < 2;
+    synthetic.transfer.opacity = seed % 3 == 0 ? 0.6 : 1;
+    SCOPED_TRACE(seed);
+    const Image texture = noise_texture(seed, 256, 256, seed == 5 ? 16 : 8);
+    expect_agreement(compare(gpu, synthetic.transfer, texture));
+  }
+}
+
+TEST_F(GpuTransferTest, ManyGroupsNeedNoBound) {
+  GpuTransfer gpu = GpuTransfer::create(device()).value();
+  SyntheticOptions options;
+  options.groups = 40;
+  options.features = 80;
+  options.grid = 40;
+  options.texture = 64;
+  options.nonlinear = 0.3;
+  expect_agreement(compare(gpu, synthetic_transfer(1, options).transfer, noise_texture(1, 64, 64)));
 }
 
 TEST_F(GpuTransferTest, WrapsFacesOverTheBorder) {

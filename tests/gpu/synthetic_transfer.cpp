@@ -10,12 +10,28 @@ double uniform(std::mt19937& random, double low, double high) {
   return low + (high - low) * (static_cast<double>(random()) / 4294967296.0);
 }
 
+// Varies along the plane, from some of the groups to others; often none for some.
+std::vector<double> influence_at(Vec2 place, int sheet, int groups) {
+  std::vector<double> influence;
+  double sum = 0;
+  for (int g = 0; g < groups; ++g) {
+    const double angle = 6.28318530717959 * g / groups + 2 * place.real() + place.imag() + sheet;
+    influence.push_back(std::max(0.0, 0.5 + std::cos(angle)));
+    sum += influence.back();
+  }
+  for (double& value : influence) value /= sum;
+  return influence;
+}
+
 }  // namespace
 
-Warp random_warp(std::mt19937& random, int features) {
+Warp random_warp(std::mt19937& random, int features, int groups) {
   Warp warp;
   warp.steps = 4;
   warp.features = static_cast<std::uint32_t>(features);
+  warp.groups = static_cast<std::uint32_t>(groups);
+  for (int k = 0; k < features && groups > 1; ++k)
+    warp.group.push_back(static_cast<std::uint32_t>(k % groups));
   std::vector<Vec2> from, to;
   for (int k = 0; k < features; ++k) {
     const double angle = 2 * 3.14159265358979 * k / features, radius = uniform(random, 0.3, 0.7);
@@ -77,25 +93,36 @@ SyntheticTransfer synthetic_transfer(unsigned seed, const SyntheticOptions& opti
   std::mt19937 random(seed);
   SyntheticTransfer result;
   result.image = std::make_unique<DecalImage>(noise_image(random, options.image, options.image * 3 / 4));
-  result.warp = std::make_unique<Warp>(random_warp(random, options.features));
+  result.warp = std::make_unique<Warp>(random_warp(random, options.features, options.groups));
   Transfer& transfer = result.transfer;
   transfer.image = result.image.get();
   transfer.warp = result.warp.get();
   const int n = options.grid;
+  std::vector<Vec2> texels;
+  Vec2 turn;
   for (int sheet = 0; sheet < options.sheets; ++sheet) {
-    const Vec2 turn = std::polar(1.0, uniform(random, 0, 6.28));
-    std::vector<Vec2> plane, texels;
+    const bool own_texels = sheet == 0 || !options.stacked;
+    const Vec2 about = std::polar(1.0, uniform(random, 0, 6.28));
+    if (own_texels) {
+      turn = about;
+      texels.clear();
+    }
+    std::vector<Vec2> plane;
+    std::vector<std::vector<double>> influence;
     for (int y = 0; y <= n; ++y) {
       for (int x = 0; x <= n; ++x) {
         const Vec2 jitter{uniform(random, -0.3, 0.3), uniform(random, -0.3, 0.3)};
         const Vec2 place = (Vec2(x, y) + jitter) * (2.0 / n) - Vec2(1, 1);
         plane.push_back(0.9 * place + Vec2(uniform(random, -0.02, 0.02), 0));
+        if (!own_texels) plane.back() *= about;
+        influence.push_back(influence_at(place, sheet, options.groups));
+        if (!own_texels) continue;
         texels.push_back(static_cast<double>(options.texture) *
                          (0.5 * options.extent * turn * place + Vec2(options.centre, options.centre)));
       }
     }
     for (int y = 0; y < n; ++y) {
-      for (int x = 0; x < n; ++x) {
+      for (int x = own_texels ? 0 : n / 4; x < n; ++x) {
         const int corner = y * (n + 1) + x;
         const Vec2 apart = x >= n / 2 ? turn * Vec2(9.3, 2.1) : Vec2(0, 0);
         for (const std::array<int, 3>& triangle : {std::array<int, 3>{corner, corner + 1, corner + n + 2},
@@ -105,7 +132,9 @@ SyntheticTransfer synthetic_transfer(unsigned seed, const SyntheticOptions& opti
             const Vec2 texel = texels[triangle[k]] + apart;
             face.texel[k] = {texel.real(), texel.imag()};
             face.plane[k] = plane[triangle[k]];
-            face.image[k] = (*transfer.warp)(face.plane[k]);
+            const std::vector<double>& at = influence[triangle[k]];
+            face.image[k] = (*transfer.warp)(face.plane[k], at);
+            if (options.groups > 1) transfer.influence.insert(transfer.influence.end(), at.begin(), at.end());
           }
           face.linear = uniform(random, 0, 1) >= options.nonlinear;
           face.sheet = static_cast<std::uint32_t>(sheet);

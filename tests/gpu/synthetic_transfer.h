@@ -20,6 +20,8 @@ struct SyntheticOptions {
   int features = 6;
   int grid = 8;  ///< Quads along a sheet's edge.
   int sheets = 1;
+  bool stacked = false;  ///< The upper sheets lie over faces of the lowest, all but a strip at its left.
+  int groups = 1;  ///< Of features, with influences that vary along a sheet; two features each, or more.
   double nonlinear = 0.5;  ///< Share of the faces that need the warp.
   double centre = 0.5;     ///< Of the faces, in textures.
   double extent = 0.7;     ///< Of the faces, in textures.
@@ -27,7 +29,7 @@ struct SyntheticOptions {
 
 /// Random features that move by up to a tenth of the plane, with all pairs and linear trajectories (§3.5 of
 /// the design) in four steps.
-Warp random_warp(std::mt19937& random, int features);
+Warp random_warp(std::mt19937& random, int features, int groups = 1);
 
 /// Noise over waves, with a soft round outline.
 DecalImage noise_image(std::mt19937& random, int width, int height);

@@ -1,5 +1,6 @@
 #include "overlay_mesh.h"
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <random>
@@ -52,18 +53,21 @@ class OverlayMeshTest : public testing::Test {
   SolvedJob job_;
 };
 
-TEST_F(OverlayMeshTest, LinearTextureCoordinatesFollowTheExactMap) {
-  const OverlayMesh mesh = build_overlay_mesh(job_.model, decal(), 0);
-  const DecalMap& map = decal().map;
-  const ImageFrame& frame = decal().region.frame();
+/// Largest distance, in pixels, of the mesh's texture coordinates from the exact map, which is told
+/// `influence(plane, sheet)`. The mesh's offset is 0.01.
+template <class Influence>
+double farthest_from_exact(const OverlayMesh& mesh, const SolvedDecal& decal, const Influence& influence) {
+  const DecalMap& map = decal.map;
+  const ImageFrame& frame = decal.region.frame();
   // The embedding of a plane is a similarity: two points of a face give it.
   const PatchFace& face = map.patch.faces[PatchFaceId(0)];
-  const auto corners = decal().surface->mesh.corners(face.mesh_face);
+  const auto corners = decal.surface->mesh.corners(face.mesh_face);
   const auto flat = [](const Vec3& p) { return Vec2(p.x(), p.y()); };
   const Vec2 turn =
       (map.plane[face.vertices[1]] - map.plane[face.vertices[0]]) / (flat(corners[1]) - flat(corners[0]));
   const auto exact = [&](const Vec3& p) {
-    return frame.to_pixel(map.warp(map.plane[face.vertices[0]] + turn * (flat(p) - flat(corners[0]))));
+    const Vec2 plane = map.plane[face.vertices[0]] + turn * (flat(p) - flat(corners[0]));
+    return frame.to_pixel(map.warp(plane, influence(plane, std::lround(p.z() / 0.01) - 1)));
   };
 
   std::mt19937 random(1);
@@ -84,13 +88,63 @@ TEST_F(OverlayMeshTest, LinearTextureCoordinatesFollowTheExactMap) {
       farthest = std::max(farthest,
                           std::hypot(uv.real() * frame.width - pixel.x, uv.imag() * frame.height - pixel.y));
     }
-  EXPECT_LT(farthest, 0.25);
+  return farthest;
+}
+
+TEST_F(OverlayMeshTest, LinearTextureCoordinatesFollowTheExactMap) {
+  const OverlayMesh mesh = build_overlay_mesh(job_.model, decal(), 0.01);
+  const auto none = [](Vec2, long) { return std::vector<double>(); };
+  EXPECT_LT(farthest_from_exact(mesh, decal(), none), 0.25);
   // The test has teeth: without dividing, it is much more.
   const OverlayMesh coarse = build_overlay_mesh(job_.model, decal(), 0, 1000);
   EXPECT_GT(mesh.triangles.size(), 4 * coarse.triangles.size());
 }
 
+TEST_F(OverlayMeshTest, SheetsLieOverOneAnotherFromTheBottomUp) {
+  // The decal twice, the upper sheet first; the features are in two groups of opposite influence.
+  const auto influence = [](Vec2 plane, long sheet) {
+    const double share = 0.5 + (sheet == 0 ? 0.4 : -0.4) * plane.real();
+    return std::vector<double>{share, 1 - share};
+  };
+  DecalMap& map = job_.decals.front().map;
+  map.groups = map.warp.groups = 2;
+  map.warp.group = {0, 0, 0, 1, 1};
+  map.influence.clear();
+  const std::size_t faces = map.patch.faces.size(), vertices = map.patch.vertices.size();
+  for (const PatchFaceId f : ids<PatchFaceId>(faces)) {
+    PatchFace face = map.patch.faces[f];
+    for (PatchVertexId& v : face.vertices) v = PatchVertexId(v.value + vertices);
+    map.patch.faces.push_back(face);
+    map.textured.push_back(map.textured[f]);
+    map.sheet[f] = 1;
+    map.sheet.push_back(0);
+  }
+  for (const PatchVertexId v : ids<PatchVertexId>(vertices)) {
+    map.patch.vertices.push_back(map.patch.vertices[v]);
+    map.plane.push_back(map.plane[v]);
+    map.image.push_back({});
+  }
+  for (const PatchVertexId v : ids<PatchVertexId>(2 * vertices)) {
+    const auto at = influence(map.plane[v], v.value < vertices ? 1 : 0);
+    map.influence.insert(map.influence.end(), at.begin(), at.end());
+    map.image[v] = map.warp(map.plane[v], at);
+  }
+
+  const OverlayMesh mesh = build_overlay_mesh(job_.model, decal(), 0.01);
+  std::vector<double> heights;
+  for (const auto& t : mesh.triangles)
+    for (const std::uint32_t v : t) heights.push_back(mesh.positions[v].z());
+  EXPECT_TRUE(std::is_sorted(heights.begin(), heights.end()));
+  EXPECT_EQ(heights.front(), 0.01);
+  EXPECT_EQ(heights.back(), 0.02);
+  EXPECT_LT(farthest_from_exact(mesh, decal(), influence), 0.25);
+  for (const Vec3& position : build_overlay_mesh(job_.model, decal(), 0).positions)
+    EXPECT_EQ(position.z(), 0);
+}
+
 TEST_F(OverlayMeshTest, HasNoCracks) {
+  // Nor where an upper sheet begins.
+  job_.decals.front().map.sheet[PatchFaceId(0)] = 1;
   const OverlayMesh mesh = build_overlay_mesh(job_.model, decal(), 0.01);
   std::map<std::pair<std::uint32_t, std::uint32_t>, int> edges;
   for (const auto& t : mesh.triangles)

@@ -84,20 +84,22 @@ TEST(Seed, IsADiscThatHoldsEveryFeature) {
       std::vector<FaceId> order(mesh.faces.size());
       for (std::size_t i = 0; i < order.size(); ++i) order[i] = FaceId(i);
       std::shuffle(order.begin(), order.end(), random);
-      std::vector<SurfacePoint> features;
+      std::uniform_real_distribution<double> unit(-1, 1);
+      std::vector<SeedFeature> features;
       std::vector<FeaturePair> tree;
       for (std::uint32_t k = 0; k < 6; ++k) {
-        features.push_back({order[k], {0.2, 0.3, 0.5}});
+        features.push_back({{order[k], {0.2, 0.3, 0.5}}, {unit(random), unit(random)}});
         if (k > 0) tree.push_back({static_cast<std::uint32_t>(random() % k), k});
       }
       BridgedSurface surface(mesh);
-      const auto seed = build_seed(surface, features, tree, 1);
+      const auto seed = build_seed(surface, features, tree);
       ASSERT_TRUE(seed.has_value());
       ASSERT_EQ(seed->disc.broken_invariant(), "") << shape.name;
       for (std::size_t k = 0; k < features.size(); ++k) {
-        ASSERT_EQ(seed->disc.faces()[seed->feature_faces[k]].mesh_face, features[k].face);
+        ASSERT_EQ(seed->disc.faces()[seed->feature_faces[k]].mesh_face, features[k].surface.face);
         EXPECT_TRUE(seed->disc.pinned(seed->feature_faces[k]));
       }
+      for (FaceId f : ids<FaceId>(mesh.faces.size())) ASSERT_LE(seed->disc.cover(f), seed->sheets);
     }
   }
 }

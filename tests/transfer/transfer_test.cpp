@@ -236,6 +236,123 @@ TEST(TransferOnCpu, TheGutterGoesOnWhereTheFaceEnds) {
   }
 }
 
+TEST(TransferOnCpu, InfluenceIsInterpolatedBetweenTheCorners) {
+  for (const int grid : {2, 30}) {  // Refined; the warp at each texel.
+    SyntheticOptions options;
+    options.texture = 128;
+    options.grid = grid;
+    options.groups = 3;
+    options.features = 9;
+    options.sheets = 2;
+    options.stacked = true;
+    options.nonlinear = 1;
+    const SyntheticTransfer synthetic = synthetic_transfer(3, options);
+    const Transfer& transfer = synthetic.transfer;
+    for (std::size_t i = 0; i < transfer.faces.size(); ++i) {
+      constexpr std::array<std::array<double, 2>, 3> corners = {{{0, 0}, {1, 0}, {0, 1}}};
+      for (int k = 0; k < 3; ++k) {
+        const Pixel at = warp_in_face(transfer, i, corners[k][0], corners[k][1]);
+        const Pixel expected = transfer.image->frame.to_pixel(transfer.faces[i].image[k]);
+        ASSERT_NEAR(at.x, expected.x, 1e-9);
+        ASSERT_NEAR(at.y, expected.y, 1e-9);
+      }
+    }
+    // Each sample against the warp at its place in the face that contains it.
+    Image texture = noise_texture(1, 128, 128);
+    const TransferResult result = transfer_on_cpu(transfer, texture, true);
+    double worst = 0;
+    std::size_t found = 0;
+    for (std::size_t s = 0; s < result.samples.size(); s += 2) {
+      const auto& sample = result.samples[s];
+      for (std::size_t i = 0; i < transfer.faces.size(); ++i) {
+        const auto& t = transfer.faces[i].texel;
+        if (transfer.faces[i].sheet != sample.sheet) continue;
+        const Vec2 origin(t[0][0], t[0][1]), p = Vec2(sample.x + 0.5, sample.y + 0.5) - origin;
+        const Vec2 a = Vec2(t[1][0], t[1][1]) - origin, b = Vec2(t[2][0], t[2][1]) - origin;
+        const double u = cross(p, b) / cross(a, b), v = cross(a, p) / cross(a, b);
+        if (u < 0.01 || v < 0.01 || u + v > 0.99) continue;
+        std::vector<double> influence;
+        for (std::size_t g = 0; g < 3; ++g) {
+          const double* corner = &transfer.influence[9 * i + g];
+          influence.push_back((1 - u - v) * corner[0] + u * corner[3] + v * corner[6]);
+        }
+        const auto& plane = transfer.faces[i].plane;
+        const Pixel exact = transfer.image->frame.to_pixel(
+            (*transfer.warp)((1 - u - v) * plane[0] + u * plane[1] + v * plane[2], influence));
+        worst = std::max(worst, std::hypot(exact.x - sample.image.x, exact.y - sample.image.y));
+        ++found;
+      }
+    }
+    EXPECT_GT(found, 2000U);
+    EXPECT_LT(worst, grid == 2 ? 0.02 : 1e-9);
+  }
+}
+
+// The lower sheet shows red over all of [8, 24] x [8, 24], the upper one over the left half of it what goes
+// from green above to nothing below.
+struct StackedSheets {
+  DecalImage image = make_decal(64, 64, [](int x, int y) {
+    if (x >= 32) return std::array<float, 4>{1, 0, 0, 1};
+    return y < 24   ? std::array<float, 4>{0, 1, 0, 1}
+           : y < 40 ? std::array<float, 4>{0, 0.5F, 0, 0.5F}
+                    : std::array<float, 4>{};
+  });
+  Transfer transfer;
+
+  StackedSheets() {
+    transfer.image = &image;
+    transfer.gutter = 4;
+    const auto quad = [&](double x0, double x1, double left, double right, std::uint32_t sheet) {
+      for (const bool second : {false, true}) {
+        TransferFace face =
+            second ? face_at(image, {{{x0, 8}, {x1, 24}, {x0, 24}}}, {{{left, 16}, {right, 48}, {left, 48}}})
+                   : face_at(image, {{{x0, 8}, {x1, 8}, {x1, 24}}}, {{{left, 16}, {right, 16}, {right, 48}}});
+        face.sheet = sheet;
+        transfer.faces.push_back(face);
+      }
+    };
+    quad(8, 16, 8, 24, 1);
+    quad(8, 16, 40, 56, 0);
+    quad(16, 24, 40, 56, 0);
+  }
+};
+
+TEST(TransferOnCpu, TheLowerSheetShowsThroughTheUpper) {
+  const StackedSheets sheets;
+  Image texture = make_image(32, 32, {0, 0, full, full});
+  const TransferResult result = transfer_on_cpu(sheets.transfer, texture, true);
+  EXPECT_EQ(result.covered_texels, 16U * 16 + 8 * 16);  // Once for every sheet.
+  EXPECT_EQ(result.samples.size(), result.covered_texels);
+  EXPECT_EQ(result.shared_texels, 0U);
+  const auto expect_texel = [&](int x, int y, double red, double green, double blue) {
+    const std::array<double, 3> linear = {red, green, blue};
+    for (int c = 0; c < 3; ++c)
+      EXPECT_EQ(texture.pixel(x, y)[c], 257 * std::lround(255 * linear_to_srgb(linear[c])))
+          << x << ", " << y << ", " << c;
+  };
+  for (const int x : {8, 11, 14}) {
+    expect_texel(x, 9, 0, 1, 0);
+    expect_texel(x, 15, 0.5, 0.5, 0);  // Both.
+    expect_texel(x, 22, 1, 0, 0);
+  }
+  // Where the upper one ends and the lower goes on, there is no gutter; around the island, each has its own.
+  for (const int y : {9, 15, 22}) expect_texel(17, y, 1, 0, 0);
+  expect_texel(11, 6, 0, 1, 0);
+  expect_texel(20, 6, 1, 0, 0);
+  expect_texel(17, 5, 1, 0, 0);  // In reach of the upper sheet, but nearer to what only the lower one has.
+  expect_texel(6, 22, 1, 0, 0);
+  expect_texel(6, 2, 0, 0, 1);
+}
+
+TEST(TransferOnCpu, SheetsAreNotUvOverlapButForeignSurfaceIs) {
+  StackedSheets sheets;
+  sheets.transfer.foreign = {{{{8, 20}, {24, 20}, {24, 30}}}, {{{8, 20}, {24, 30}, {8, 30}}}};
+  Image texture = make_image(32, 32, {0, 0, full, full});
+  const TransferResult result = transfer_on_cpu(sheets.transfer, texture);
+  EXPECT_EQ(result.shared_texels, 4U * 16 + 4 * 8);  // Once for every sheet.
+  EXPECT_EQ(texture.pixel(10, 25)[2], full);         // No gutter over it.
+}
+
 TEST(TransferOnCpu, TheUpperSheetWinsWhateverTheOrder) {
   const DecalImage image = make_decal(64, 64, [](int x, int) {
     return x < 32 ? std::array<float, 4>{1, 0, 0, 1} : std::array<float, 4>{0, 1, 0, 1};

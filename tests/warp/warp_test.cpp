@@ -68,6 +68,12 @@ TEST(Warp, TranslatesEveryPointUnderACommonTranslation) {
     EXPECT_LT(std::abs(built.warp(z) - z - Vec2(0.25, -0.5)), 1e-13);
 }
 
+std::vector<WarpProbe> probes_at(const std::vector<Vec2>& places) {
+  std::vector<WarpProbe> probes;
+  for (Vec2 z : places) probes.push_back({z, {}});
+  return probes;
+}
+
 TEST(Warp, SwappingTheEndsInvertsIt) {
   std::mt19937 random(9);
   std::uniform_real_distribution<double> shift(-0.1, 0.1);
@@ -76,8 +82,8 @@ TEST(Warp, SwappingTheEndsInvertsIt) {
   for (Vec2& z : to) z += Vec2(shift(random), shift(random));
   const std::vector<Vec2> probes = random_points(random, 15, 1);
   const WarpOptions fine{1e-12, 256};
-  const BuiltWarp there = build_warp(from, to, open_graph(6), probes, fine);
-  const BuiltWarp back = build_warp(to, from, open_graph(6), probes, fine);
+  const BuiltWarp there = build_warp(from, to, open_graph(6), probes_at(probes), {}, fine);
+  const BuiltWarp back = build_warp(to, from, open_graph(6), probes_at(probes), {}, fine);
   for (Vec2 z : probes) EXPECT_LT(std::abs(back.warp(there.warp(z)) - z), 1e-8);
 }
 
@@ -85,8 +91,8 @@ TEST(Warp, StepsAreRefinedUntilTheProbesRest) {
   std::mt19937 random(10);
   const std::vector<Vec2> from = random_points(random, 6, 0.9), to = random_points(random, 6, 0.9);
   const std::vector<Vec2> probes = random_points(random, 15, 1);
-  const BuiltWarp coarse = build_warp(from, to, open_graph(6), probes, {2e-5, 1024});
-  const BuiltWarp fine = build_warp(from, to, open_graph(6), probes, {1e-9, 8192});
+  const BuiltWarp coarse = build_warp(from, to, open_graph(6), probes_at(probes), {}, {2e-5, 1024});
+  const BuiltWarp fine = build_warp(from, to, open_graph(6), probes_at(probes), {}, {1e-9, 8192});
   for (Vec2 z : probes) EXPECT_LT(std::abs(coarse.warp(z) - fine.warp(z)), 4e-5);
 }
 

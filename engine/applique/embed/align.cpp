@@ -32,8 +32,26 @@ Similarity fit_similarity(std::span<const Vec2> from, std::span<const Vec2> to) 
   return {scale, to_centre - scale * from_centre};
 }
 
-bool is_mirrored(std::span<const Vec2> from, std::span<const Vec2> to) {
+Similarity fit_by_edges(std::span<const Vec2> from, std::span<const Vec2> to,
+                        std::span<const std::array<std::uint32_t, 2>> edges) {
+  double from_length = 0, to_length = 0;
+  for (const auto& [i, j] : edges) {
+    from_length += std::abs(from[j] - from[i]);
+    to_length += std::abs(to[j] - to[i]);
+  }
+  const Vec2 scale = std::polar(to_length / from_length, std::arg(fit_similarity(from, to).scale));
+  return {scale, centroid(to) - scale * centroid(from)};
+}
+
+bool is_mirrored(std::span<const Vec2> from, std::span<const Vec2> to,
+                 std::span<const std::array<std::uint32_t, 3>> triangles) {
   if (from.size() < 3) return false;
+  double turned = 0, kept = 0;
+  for (const auto& [a, b, c] : triangles) {
+    const double area = std::abs(cross(to[b] - to[a], to[c] - to[a]));
+    (cross(from[b] - from[a], from[c] - from[a]) < 0 ? turned : kept) += area;
+  }
+  if (turned < kept) return false;
   std::vector<Vec2> reflected(from.begin(), from.end());
   for (Vec2& z : reflected) z = std::conj(z);
   double size = 0;

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <span>
 
 #include "applique/base/types.h"
@@ -17,9 +19,16 @@ struct Similarity {
 /// design). Exact for two points. At least two points, not all `from` equal.
 Similarity fit_similarity(std::span<const Vec2> from, std::span<const Vec2> to);
 
-/// Whether a reflection brings `from` much nearer to `to` than a similarity does: the correspondence is
-/// mirrored, and no map that keeps the orientation can follow it. Needs three points that are not collinear;
-/// false for fewer.
-bool is_mirrored(std::span<const Vec2> from, std::span<const Vec2> to);
+/// The same with the edges' mean length in place of the best scale: for places that a similarity does not
+/// bring near to one another, such as those of a ribbon that is a loop in one plane and straight in the
+/// other. The edges join all points.
+Similarity fit_by_edges(std::span<const Vec2> from, std::span<const Vec2> to,
+                        std::span<const std::array<std::uint32_t, 2>> edges);
+
+/// Whether a reflection brings `from` much nearer to `to` than a similarity does, and turns most of the area
+/// of `triangles`, if there are any: the correspondence is mirrored, and no map that keeps the orientation
+/// can follow it. Needs three points that are not collinear; false for fewer.
+bool is_mirrored(std::span<const Vec2> from, std::span<const Vec2> to,
+                 std::span<const std::array<std::uint32_t, 3>> triangles = {});
 
 }  // namespace applique

@@ -54,9 +54,12 @@ Result<ComputePipeline> ComputePipeline::create(const Device& device, const Comp
   module_info.pCode = info.spirv.data();
   DeviceObject<VkShaderModule> module;
   APPLIQUE_VK_CREATE(device, module, vkCreateShaderModule, vkDestroyShaderModule, &module_info);
-  const VkBool32 constant = info.constant ? VK_TRUE : VK_FALSE;
-  const VkSpecializationMapEntry entry{0, 0, sizeof(constant)};
-  const VkSpecializationInfo specialization{1, &entry, sizeof(constant), &constant};
+  std::vector<VkSpecializationMapEntry> entries;
+  for (std::uint32_t k = 0; k < info.constants.size(); ++k)
+    entries.push_back({k, k * std::uint32_t{sizeof(std::uint32_t)}, sizeof(std::uint32_t)});
+  const VkSpecializationInfo specialization{static_cast<std::uint32_t>(entries.size()), entries.data(),
+                                            info.constants.size() * sizeof(std::uint32_t),
+                                            info.constants.data()};
   VkComputePipelineCreateInfo pipeline_info{VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO};
   pipeline_info.stage = {VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
                          nullptr,

@@ -12,10 +12,10 @@ namespace applique {
 struct ComputePipelineInfo {
   std::string name;
   std::span<const std::uint32_t> spirv;
-  std::vector<std::uint32_t> storage;  ///< Bindings of storage buffers, in set 0.
-  std::vector<std::uint32_t> uniform;  ///< Bindings of uniform buffers, in set 0.
-  std::uint32_t push_size = 0;         ///< Bytes.
-  bool constant = false;               ///< Specialisation constant 0, for shaders that have one.
+  std::vector<std::uint32_t> storage;    ///< Bindings of storage buffers, in set 0.
+  std::vector<std::uint32_t> uniform;    ///< Bindings of uniform buffers, in set 0.
+  std::uint32_t push_size = 0;           ///< Bytes.
+  std::vector<std::uint32_t> constants;  ///< Specialisation constants 0, 1, …
 };
 
 /// A compute shader with its one descriptor set.

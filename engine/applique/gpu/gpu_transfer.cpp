@@ -4,6 +4,7 @@
 #include <bit>
 #include <cmath>
 #include <cstring>
+#include <tuple>
 
 #include <fmt/format.h>
 
@@ -49,14 +50,18 @@ std::vector<std::uint16_t> packed_levels(const DecalImage& image, std::size_t fi
   return halves;
 }
 
-// As the shader reads it: pairs, positions by stage, rates by stage.
+// As the shader reads it: pairs, positions and groups by stage, rates by stage.
 std::vector<shader::vec4> warp_table(const Warp& warp) {
   std::vector<shader::vec4> table;
   table.reserve(warp.pairs.size() + warp.position.size() + warp.lambda.size());
   for (const auto& [i, j] : warp.pairs)
     table.push_back({std::bit_cast<float>(i), std::bit_cast<float>(j), 0, 0});
-  for (const Vec2 p : warp.position)
-    table.push_back({static_cast<float>(p.real()), static_cast<float>(p.imag()), 0, 0});
+  for (std::size_t i = 0; i < warp.position.size(); ++i) {
+    const Vec2 p = warp.position[i];
+    const std::uint32_t group = warp.groups > 1 ? warp.group[i % warp.features] : 0;
+    table.push_back(
+        {static_cast<float>(p.real()), static_cast<float>(p.imag()), std::bit_cast<float>(group), 0});
+  }
   for (std::size_t q = 0; q < warp.lambda.size(); ++q) {
     table.push_back({static_cast<float>(warp.lambda[q].real()), static_cast<float>(warp.lambda[q].imag()),
                      static_cast<float>(warp.offset[q].real()), static_cast<float>(warp.offset[q].imag())});
@@ -68,9 +73,21 @@ shader::vec2 to_floats(const std::array<double, 2>& v) {
   return {static_cast<float>(v[0]), static_cast<float>(v[1])};
 }
 
-// `points` takes the grid of a refined face.
-shader::FaceMap to_face_map(const PlacedFace& face, const RefinedFace& refined,
-                            std::vector<shader::vec2>& points) {
+// Adds what a warp with groups is told in a face: by corner the plane point, then, for every two groups, by
+// corner their influence.
+void add_places(const Transfer& transfer, std::size_t face, std::vector<shader::vec2>& points) {
+  for (const Vec2 p : transfer.faces[face].plane) points.push_back(to_floats({p.real(), p.imag()}));
+  const std::size_t groups = transfer.warp->groups;
+  for (std::size_t g = 0; g < groups; g += 2)
+    for (std::size_t corner = 3 * face; corner < 3 * face + 3; ++corner) {
+      const double* influence = &transfer.influence[corner * groups];
+      points.push_back(to_floats({influence[g], g + 1 < groups ? influence[g + 1] : 0}));
+    }
+}
+
+// `points` takes the face's grid, if it has one.
+shader::FaceMap to_face_map(const Transfer& transfer, std::size_t index, const PlacedFace& face,
+                            const RefinedFace& refined, std::vector<shader::vec2>& points) {
   shader::FaceMap map{};
   std::array<double, 2> value = face.map.value;
   map.texel = {face.map.origin[0], face.map.origin[1]};
@@ -87,15 +104,16 @@ shader::FaceMap to_face_map(const PlacedFace& face, const RefinedFace& refined,
   map.level = static_cast<float>(face.footprint.level);
   map.probes = static_cast<std::uint32_t>(face.footprint.probes);
   map.flags = face.clamped ? shader::face_clamped : 0;
+  map.first_point = static_cast<std::uint32_t>(points.size());
   if (refined.cells > 0) {
     map.flags |= static_cast<std::uint32_t>(refined.cells) * shader::face_cells;
-    map.first_point = static_cast<std::uint32_t>(points.size());
     map.pixel = {static_cast<std::int32_t>(std::floor(refined.points[0].x)),
                  static_cast<std::int32_t>(std::floor(refined.points[0].y))};
     for (const Pixel& p : refined.points)
       points.push_back(to_floats({p.x - map.pixel[0], p.y - map.pixel[1]}));
   } else if (face.warped) {
     map.flags |= shader::face_warped;
+    if (transfer.warp->groups > 1) add_places(transfer, index, points);
   }
   return map;
 }
@@ -118,6 +136,7 @@ struct GpuTransfer::Run {
   const Transfer& transfer;
   Image& texture;
   bool keep_samples;
+  int bits;  // To round to.
   TransferResult result{};
   Buffer decal{};
   std::size_t first_level = 0;  // In `decal`, once that is there.
@@ -165,44 +184,51 @@ Result<GpuTransfer> GpuTransfer::create(const Device& device, const GpuTransferO
   return result;
 }
 
-Result<const ComputePipeline*> GpuTransfer::shading_pipeline(Shading shading) {
-  std::optional<ComputePipeline>& pipeline = shade_[static_cast<std::size_t>(shading)];
-  if (!pipeline) {
+Result<const ComputePipeline*> GpuTransfer::shading_pipeline(Shading shading, std::uint32_t groups) {
+  auto found = shade_.find({shading, groups});
+  if (found == shade_.end()) {
     ComputePipelineInfo info{"transfer shade",
                              applique_spirv_transfer_shade,
                              {0, 1, 2, 3, 4, 5, 6, 8},
                              {7},
                              sizeof(shader::TransferConstants),
-                             shading != Shading::linear};
+                             {shading != Shading::linear ? 1U : 0U, groups}};
     if (shading == Shading::large_warp) {
       info.spirv = applique_spirv_transfer_shade_large;
       info.storage.push_back(9);
     }
-    APPLIQUE_TRY(pipeline, ComputePipeline::create(*device_, info));
+    APPLIQUE_TRY(ComputePipeline pipeline, ComputePipeline::create(*device_, info));
+    found = shade_.emplace(std::pair(shading, groups), std::move(pipeline)).first;
   }
-  return &*pipeline;
+  return &found->second;
 }
 
 Result<TransferResult> GpuTransfer::run(const Transfer& transfer, Image& texture, bool keep_samples) {
-  Run run{transfer, texture, keep_samples};
+  const std::vector<std::uint32_t> sheets = sheets_of(transfer);
+  Run run{transfer, texture, keep_samples, working_bits(texture, sheets.size())};
   run.refined = refine_faces(transfer);
   if (transfer.warp && transfer.warp->steps > 0) run.table = warp_table(*transfer.warp);
-  for (int y = 0; y < texture.height; y += options_.tile) {
-    for (int x = 0; x < texture.width; x += options_.tile) {
-      APPLIQUE_CHECK(run_tile(run, {x, y, std::min(options_.tile, texture.width - x),
-                                    std::min(options_.tile, texture.height - y)}));
+  for (const std::uint32_t sheet : sheets) {
+    for (int y = 0; y < texture.height; y += options_.tile) {
+      for (int x = 0; x < texture.width; x += options_.tile) {
+        APPLIQUE_CHECK(run_tile(
+            run, sheet,
+            {x, y, std::min(options_.tile, texture.width - x), std::min(options_.tile, texture.height - y)}));
+      }
     }
   }
-  std::sort(run.result.samples.begin(), run.result.samples.end(),
-            [](const auto& a, const auto& b) { return a.y != b.y ? a.y < b.y : a.x < b.x; });
+  if (run.bits != texture.bits) round_to_8_bits(texture);
+  std::sort(run.result.samples.begin(), run.result.samples.end(), [](const auto& a, const auto& b) {
+    return std::tie(a.sheet, a.y, a.x) < std::tie(b.sheet, b.y, b.x);
+  });
   if (texture.channels < 3 && run.result.covered_texels + run.result.gutter_texels > 0) texture.channels += 2;
   return run.result;
 }
 
-Result<void> GpuTransfer::run_tile(Run& run, const TexelRect& tile) {
+Result<void> GpuTransfer::run_tile(Run& run, std::uint32_t sheet, const TexelRect& tile) {
   const Device& device = *device_;
   const Transfer& transfer = run.transfer;
-  TilePlan plan = plan_tile(transfer, run.texture.width, run.texture.height, tile);
+  TilePlan plan = plan_tile(transfer, run.texture.width, run.texture.height, tile, sheet);
   if (plan.jobs.empty()) return {};
   const TexelRect &work = plan.work, &region = plan.region;
   const std::size_t foreign_first = plan.jobs.size();
@@ -220,7 +246,7 @@ Result<void> GpuTransfer::run_tile(Run& run, const TexelRect& tile) {
          {TexelRect{tile.x, tile.y, left, top}, TexelRect{tile.x + left, tile.y, tile.width - left, top},
           TexelRect{tile.x, tile.y + top, left, tile.height - top},
           TexelRect{tile.x + left, tile.y + top, tile.width - left, tile.height - top}}) {
-      if (part.width > 0 && part.height > 0) APPLIQUE_CHECK(run_tile(run, part));
+      if (part.width > 0 && part.height > 0) APPLIQUE_CHECK(run_tile(run, sheet, part));
     }
     return {};
   }
@@ -233,7 +259,7 @@ Result<void> GpuTransfer::run_tile(Run& run, const TexelRect& tile) {
   for (const Placement& placement : plan.placements) {
     const RefinedFace& refined = run.refined[placement.face];
     const PlacedFace face = place_face(transfer, placement, refined.cells);
-    faces.push_back(to_face_map(face, refined, points));
+    faces.push_back(to_face_map(transfer, placement.face, face, refined, points));
     finest = std::min(finest, face.footprint.level);
     warped |= face.warped && refined.cells == 0;
   }
@@ -241,7 +267,7 @@ Result<void> GpuTransfer::run_tile(Run& run, const TexelRect& tile) {
   const Shading shading = !warped                                           ? Shading::linear
                           : run.table.size() <= shader::warp_table_capacity ? Shading::warped
                                                                             : Shading::large_warp;
-  APPLIQUE_TRY(const ComputePipeline* shade, shading_pipeline(shading));
+  APPLIQUE_TRY(const ComputePipeline* shade, shading_pipeline(shading, warped ? transfer.warp->groups : 1));
 
   const DecalImage& image = *transfer.image;
   std::vector<Tables> tables(1);
@@ -283,7 +309,7 @@ Result<void> GpuTransfer::run_tile(Run& run, const TexelRect& tile) {
   constants.opacity = static_cast<float>(transfer.opacity);
   constants.blend = static_cast<std::uint32_t>(transfer.blend);
   constants.opaque = transfer.opaque ? 1 : 0;
-  constants.max_value = run.texture.bits == 8 ? 255.0F : 65535.0F;
+  constants.max_value = run.bits == 8 ? 255.0F : 65535.0F;
   constants.keep_samples = run.keep_samples ? 1 : 0;
   if (warped) {
     constants.steps = transfer.warp->steps;
@@ -342,6 +368,7 @@ Result<void> GpuTransfer::run_tile(Run& run, const TexelRect& tile) {
     if (std::isnan(sample[0])) continue;
     run.result.samples.push_back({static_cast<std::uint32_t>(work.x + static_cast<int>(i % work.width)),
                                   static_cast<std::uint32_t>(work.y + static_cast<int>(i / work.width)),
+                                  sheet,
                                   {sample[0], sample[1]}});
   }
   return {};

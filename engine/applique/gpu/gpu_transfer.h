@@ -1,6 +1,8 @@
 #pragma once
 
-#include <optional>
+#include <cstdint>
+#include <map>
+#include <utility>
 
 #include "applique/gpu/compute_pipeline.h"
 #include "applique/gpu/device.h"
@@ -29,13 +31,14 @@ class GpuTransfer {
   /// How a texel finds its image point: by its linear face, by the warp, by a warp whose tables are large.
   enum class Shading { linear, warped, large_warp };
 
-  Result<const ComputePipeline*> shading_pipeline(Shading shading);
-  Result<void> run_tile(Run& run, const struct TexelRect& tile);
+  /// `groups`: of the warp's features; the shader is compiled for each number of them.
+  Result<const ComputePipeline*> shading_pipeline(Shading shading, std::uint32_t groups);
+  Result<void> run_tile(Run& run, std::uint32_t sheet, const struct TexelRect& tile);
 
   const Device* device_ = nullptr;
   GpuTransferOptions options_;
   ComputePipeline cover_, nearest_;
-  std::array<std::optional<ComputePipeline>, 3> shade_;  // By Shading.
+  std::map<std::pair<Shading, std::uint32_t>, ComputePipeline> shade_;  // By Shading and groups.
 };
 
 }  // namespace applique

@@ -9,6 +9,10 @@ constexpr std::size_t most_hole_sides = 64;
 constexpr double largest_pocket = 0.15;   // area, share of the patch's
 constexpr double longest_pocket_rim = 1;  // share of the region's diameter
 constexpr double largest_hole = 0.5;      // perimeter, share of the region's diameter
+// Below it two parts of the image are one sheet: the larger of sides of their triangles, and a share of the
+// region's diameter.
+constexpr double near_sides = 4;
+constexpr double near_share = 0.1;
 
 /// The apex of the face beyond edge a -> b, in the frame of that edge, from the triangle's own shape.
 Vec2 apex_in_edge_frame(const Vec3& a, const Vec3& b, const Vec3& apex) {
@@ -102,6 +106,7 @@ std::size_t Growth::pad(PatchPoints& points) {
     for (PatchFaceId across : face.neighbours)
       if (across.valid()) work.push_back(across);
   }
+  note_cover();
   IdVector<PatchVertexId, char> inside(disc_.vertex_count(), false);
   near.resize(disc_.vertex_count(), false);
   for (PatchVertexId v : ids<PatchVertexId>(near.size())) {
@@ -136,12 +141,40 @@ std::vector<Growth::Side> Growth::front(const PatchPoints& points,
   return front;
 }
 
+void Growth::note_cover() {
+  over_.clear();
+  if (cover_limit_ == 1) return;
+  for (PatchFaceId q : ids<PatchFaceId>(disc_.faces().size()))
+    if (disc_.alive(q)) over_[disc_.faces()[q].mesh_face].push_back(q);
+}
+
+bool Growth::covered_nearby(FaceId f, const std::array<Vec2, 3>& image, const PatchPoints& points) const {
+  const auto middle = [](const std::array<Vec2, 3>& z) { return (z[0] + z[1] + z[2]) / 3.0; };
+  const auto side = [](const std::array<Vec2, 3>& z) {
+    return std::max({std::abs(z[1] - z[0]), std::abs(z[2] - z[1]), std::abs(z[0] - z[2])});
+  };
+  const auto over = over_.find(f);
+  return over != over_.end() && std::any_of(over->second.begin(), over->second.end(), [&](PatchFaceId q) {
+           if (!disc_.alive(q)) return false;
+           const auto& v = disc_.faces()[q].vertices;
+           const std::array<Vec2, 3> other = {points[v[0]].image, points[v[1]].image, points[v[2]].image};
+           return std::abs(middle(image) - middle(other)) <=
+                  std::max(near_sides * std::max(side(image), side(other)), near_share * region_.diameter());
+         });
+}
+
 /// Glues the face across edge k of q, which becomes the disc's last, and predicts its new vertex.
 ImmersedDisc::Glue Growth::glue(PatchFaceId q, int k, PatchPoints& points,
                                 IdVector<PatchVertexId, char>& inside) {
   const PatchFace face = disc_.faces()[q];
+  const FaceId beyond = disc_.surface().neighbour(face.mesh_face, k);
+  if (beyond.valid() && cover_limit_ > 1 && disc_.cover(beyond) > 0) {
+    const Vec2 a = points[face.vertices[(k + 1) % 3]].image, b = points[face.vertices[(k + 2) % 3]].image;
+    if (covered_nearby(beyond, {a, b, 0.5 * (a + b)}, points)) return ImmersedDisc::Glue::covered;
+  }
   const ImmersedDisc::GlueResult result = disc_.glue(q, k, cover_limit_);
   if (result.outcome != ImmersedDisc::Glue::glued) return result.outcome;
+  if (cover_limit_ > 1) over_[beyond].push_back(result.face);
   points.resize(disc_.vertex_count());
   inside.resize(disc_.vertex_count(), false);
   if (result.merged) return result.outcome;
@@ -156,6 +189,7 @@ ImmersedDisc::Glue Growth::glue(PatchFaceId q, int k, PatchPoints& points,
 std::size_t Growth::grow(PatchPoints& points, IdVector<PatchVertexId, char>& inside, double scale,
                          const Limits& limits) {
   const std::size_t most = static_cast<std::size_t>(limits.growth * static_cast<double>(disc_.live_faces()));
+  note_cover();
   std::vector<PatchFaceId> candidates;
   candidates.reserve(disc_.faces().size());
   for (PatchFaceId q : ids<PatchFaceId>(disc_.faces().size())) candidates.push_back(q);
@@ -176,6 +210,7 @@ std::size_t Growth::grow(PatchPoints& points, IdVector<PatchVertexId, char>& ins
 }
 
 std::size_t Growth::fill_pockets(PatchPoints& points, IdVector<PatchVertexId, char>& inside, double scale) {
+  note_cover();
   const BridgedSurface& surface = disc_.surface();
   const double longest_rim = longest_pocket_rim * region_.diameter() / scale;
   const auto area_of = [&](FaceId f) {
@@ -266,10 +301,10 @@ Coverage Growth::coverage(const PatchPoints& points) const {
       const PatchVertexId a = face.vertices[(k + 1) % 3], b = face.vertices[(k + 2) % 3];
       if (!region_.meets_segment(points[a].image, points[b].image)) continue;
       const FaceId beyond = disc_.surface().neighbour(face.mesh_face, k);
-      const Coverage here = !beyond.valid()                       ? Coverage::clipped_by_boundary
-                            : disc_.cover(beyond) >= cover_limit_ ? Coverage::clipped_by_cover
-                            : disc_.boundary_length() <= 3        ? Coverage::clipped_closed
-                                                                  : Coverage::not_converged;
+      const Coverage here = !beyond.valid()                ? Coverage::clipped_by_boundary
+                            : disc_.cover(beyond) > 0      ? Coverage::clipped_by_cover
+                            : disc_.boundary_length() <= 3 ? Coverage::clipped_closed
+                                                           : Coverage::not_converged;
       worst = std::max(worst, here);
     }
   }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <span>
 #include <unordered_map>
 #include <vector>
@@ -60,6 +61,10 @@ class Growth {
   /// fronts that met behind the pit would stay apart for ever. Returns how many faces were added.
   std::size_t fill_pockets(PatchPoints& points, IdVector<PatchVertexId, char>& inside, double scale);
 
+  /// How often a surface face may be covered from now on.
+  void set_cover_limit(std::uint32_t cover_limit) { cover_limit_ = cover_limit; }
+  [[nodiscard]] std::uint32_t cover_limit() const { return cover_limit_; }
+
   /// Drops dead ids; `points` follows.
   void compact(PatchPoints& points);
 
@@ -80,6 +85,11 @@ class Growth {
                                         std::span<const PatchFaceId> candidates) const;
   ImmersedDisc::Glue glue(PatchFaceId q, int k, PatchPoints& points, IdVector<PatchVertexId, char>& inside);
   [[nodiscard]] bool face_meets_region(PatchFaceId q, const PatchPoints& points) const;
+  /// Whether a patch face over f lies where the triangle a, b, c of the image does, or nearby.
+  [[nodiscard]] bool covered_nearby(FaceId f, const std::array<Vec2, 3>& image,
+                                    const PatchPoints& points) const;
+  /// Notes which patch faces lie over which surface face; needed when faces may be covered again.
+  void note_cover();
   bool bridge_hole(PatchFaceId q, int k, double scale);
 
   ImmersedDisc& disc_;
@@ -87,6 +97,8 @@ class Growth {
   const Region& region_;
   std::uint32_t cover_limit_;
   std::unordered_map<FaceId, std::uint32_t> peeled_;
+  std::unordered_map<FaceId, std::vector<PatchFaceId>>
+      over_;  ///< Kept while cover_limit_ > 1; may name the dead.
 };
 
 }  // namespace applique

@@ -168,15 +168,19 @@ std::optional<ImmersedDisc::Side> ImmersedDisc::open_side(PatchVertexId v) const
 }
 
 PatchVertexId ImmersedDisc::complete_fan(PatchVertexId v, std::uint32_t cover_limit) {
+  return complete_fan(v, [&](FaceId) { return cover_limit; });
+}
+
+PatchVertexId ImmersedDisc::complete_fan(PatchVertexId v,
+                                         const std::function<std::uint32_t(FaceId)>& cover_limit) {
+  const auto glue_at = [&](const Side& side) {
+    const FaceId beyond = surface_->neighbour(faces_[side.face].mesh_face, side.edge);
+    return beyond.valid() && glue(side.face, side.edge, cover_limit(beyond)).outcome == Glue::glued;
+  };
   while (!full(v)) {
     const Side out = outgoing_boundary(v);
     if (!out.face.valid()) return v;
-    GlueResult result = glue(out.face, out.edge, cover_limit);
-    if (result.outcome != Glue::glued) {
-      const Side in = incoming_boundary(v);
-      result = glue(in.face, in.edge, cover_limit);
-    }
-    if (result.outcome != Glue::glued) return v;
+    if (!glue_at(out) && !glue_at(incoming_boundary(v))) return v;
     v = survivor(v);
   }
   return v;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 #include <unordered_map>
@@ -46,6 +47,8 @@ class ImmersedDisc {
   /// Glues faces round vertex v until its fan is closed or nothing more can be glued. Returns v, or the
   /// vertex that it was merged into.
   PatchVertexId complete_fan(PatchVertexId v, std::uint32_t cover_limit);
+  /// With a limit for each surface face.
+  PatchVertexId complete_fan(PatchVertexId v, const std::function<std::uint32_t(FaceId)>& cover_limit);
 
   /// A boundary edge at v, as the face and the edge to glue across; nothing when v is interior.
   struct Side {

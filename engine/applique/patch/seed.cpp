@@ -1,91 +1,221 @@
 #include "applique/patch/seed.h"
 
 #include <algorithm>
+#include <unordered_map>
 
 #include "applique/surface/shortest_path.h"
 
 namespace applique {
 namespace {
 
-/// The neighbour of v over a surface vertex, or v itself if it lies over it.
-PatchVertexId neighbour_over(const ImmersedDisc& disc, PatchVertexId v, VertexId target) {
-  if (disc.mesh_vertex(v) == target) return v;
-  for (PatchFaceId q : disc.fan(v))
-    for (PatchVertexId w : disc.faces()[q].vertices)
-      if (disc.mesh_vertex(w) == target) return w;
-  return {};
-}
+/// An edge of the tree on the surface, in the order in which it is walked.
+struct Strand {
+  std::size_t edge;  ///< In the tree.
+  std::uint32_t from, to;
+  std::vector<VertexId> path;
+  std::vector<Vec2> image;  ///< By path vertex: spread along the edge by arc length (§4.3 of the paper).
+  double scale;             ///< Plane units per scene unit.
+};
 
-PatchVertexId any_vertex_over(const ImmersedDisc& disc, VertexId target) {
-  for (PatchVertexId v : ids<PatchVertexId>(disc.vertex_count()))
-    if (disc.alive(v) && disc.mesh_vertex(v) == target) return v;
-  return {};
-}
-
-PatchFaceId any_face_over(const ImmersedDisc& disc, FaceId target) {
-  for (PatchFaceId q : ids<PatchFaceId>(disc.faces().size()))
-    if (disc.alive(q) && disc.faces()[q].mesh_face == target) return q;
-  return {};
-}
-
-/// Grows the disc along the path, from the patch face `start`, and returns the face over `goal`. Where the
-/// way on is covered already, by a branch that came this way, the walk goes on from that branch's vertex.
-PatchFaceId thicken_path(ImmersedDisc& disc, PatchFaceId start, std::span<const VertexId> path, FaceId goal,
-                         std::uint32_t cover_limit) {
-  const auto& corners = disc.faces()[start].vertices;
-  PatchVertexId at = *std::find_if(corners.begin(), corners.end(),
-                                   [&](PatchVertexId v) { return disc.mesh_vertex(v) == path.front(); });
-  for (std::size_t i = 0; i < path.size(); ++i) {
-    at = disc.complete_fan(at, cover_limit);
-    if (i + 1 == path.size()) break;
-    const PatchVertexId next = neighbour_over(disc, at, path[i + 1]);
-    at = next.valid() ? next : any_vertex_over(disc, path[i + 1]);
-    APPLIQUE_ASSERT(at.valid());  // a face beside the path's edge is glued, or covered and so in the disc
-  }
-  for (PatchFaceId q : disc.fan(at))
-    if (disc.faces()[q].mesh_face == goal) return q;
-  const PatchFaceId covered = any_face_over(disc, goal);
-  APPLIQUE_ASSERT(covered.valid());
-  return covered;
-}
-
-void add_ring(ImmersedDisc& disc, std::uint32_t cover_limit) {
-  const std::size_t count = disc.faces().size();
-  for (PatchFaceId q : ids<PatchFaceId>(count))
-    for (int k = 0; k < 3; ++k)
-      if (!disc.faces()[q].neighbours[k].valid()) disc.glue(q, k, cover_limit);
-}
-
-}  // namespace
-
-tl::expected<Seed, SeedFailure> build_seed(BridgedSurface& surface, std::span<const SurfacePoint> features,
-                                           std::span<const FeaturePair> tree, std::uint32_t cover_limit) {
-  Seed seed{ImmersedDisc(surface, features[0].face), std::vector<PatchFaceId>(features.size()),
-            std::vector<std::vector<VertexId>>(tree.size())};
-  seed.feature_faces[0] = PatchFaceId(0);
-  seed.disc.pin(PatchFaceId(0));
-  // Breadth first from feature 0: an edge is walked as soon as one of its ends is placed.
+/// Breadth first from feature 0: an edge is walked as soon as one of its ends is placed.
+tl::expected<std::vector<Strand>, SeedFailure> lay_strands(const SurfaceMesh& mesh,
+                                                           std::span<const SeedFeature> features,
+                                                           std::span<const FeaturePair> tree) {
+  std::vector<Strand> strands;
+  std::vector<char> placed(features.size(), false);
   std::vector<std::uint32_t> queue = {0};
+  placed[0] = true;
   for (std::size_t i = 0; i < queue.size(); ++i) {
     const std::uint32_t from = queue[i];
     for (std::size_t e = 0; e < tree.size(); ++e) {
-      const FeaturePair& edge = tree[e];
-      if (edge[0] != from && edge[1] != from) continue;
-      const std::uint32_t to = edge[0] == from ? edge[1] : edge[0];
-      if (seed.feature_faces[to].valid()) continue;
-      const std::vector<VertexId> path = shortest_path(surface.mesh(), features[from], features[to]);
-      if (path.empty()) return tl::unexpected(SeedFailure{edge});
-      seed.feature_faces[to] =
-          thicken_path(seed.disc, seed.feature_faces[from], path, features[to].face, cover_limit);
-      seed.disc.pin(seed.feature_faces[to]);
-      seed.paths[e] = path;
+      if (tree[e][0] != from && tree[e][1] != from) continue;
+      const std::uint32_t to = tree[e][0] == from ? tree[e][1] : tree[e][0];
+      if (placed[to]) continue;
+      Strand strand{e, from, to, shortest_path(mesh, features[from].surface, features[to].surface), {}, 0};
+      if (strand.path.empty()) return tl::unexpected(SeedFailure{tree[e]});
+      placed[to] = true;
       queue.push_back(to);
+      strands.push_back(std::move(strand));
     }
   }
   APPLIQUE_ASSERT(queue.size() == features.size());
-  add_ring(seed.disc, cover_limit);
-  const ImmersedDisc::Renumbering map = seed.disc.compact();
-  for (PatchFaceId& q : seed.feature_faces) q = map.faces[q];
+  for (Strand& strand : strands) {
+    const SeedFeature &from = features[strand.from], &to = features[strand.to];
+    Vec3 last = position_of(mesh, from.surface);
+    double length = 0;
+    std::vector<double> along;
+    for (VertexId v : strand.path) {
+      length += (mesh.positions[v] - last).norm();
+      last = mesh.positions[v];
+      along.push_back(length);
+    }
+    length += (position_of(mesh, to.surface) - last).norm();
+    for (const double s : along)
+      strand.image.push_back(from.image + (length > 0 ? s / length : 0.0) * (to.image - from.image));
+    strand.scale = length > 0 ? std::abs(to.image - from.image) / length : 0;
+  }
+  return strands;
+}
+
+/// How many sheets each face near the paths has: as many as there are strands over it that lie far apart in
+/// the image. Strands that share a feature are both shortest ways from it, and so are one sheet wherever they
+/// meet.
+std::unordered_map<FaceId, std::uint32_t> count_sheets(const SurfaceMesh& mesh,
+                                                       const std::vector<Strand>& strands) {
+  // The largest distance in one sheet: edges of the face, and share of all.
+  constexpr double far_edges = 8, far_share = 0.1;
+  double extent = 0;
+  for (const Strand& strand : strands)
+    for (const Vec2 z : strand.image) extent = std::max(extent, std::abs(z - strands[0].image[0]));
+  struct Mark {
+    const Strand* strand;
+    Vec2 image;
+  };
+  std::unordered_map<FaceId, std::vector<Mark>> marks;
+  for (const Strand& strand : strands)
+    for (std::size_t i = 0; i < strand.path.size(); ++i)
+      for_each_face(mesh, strand.path[i], [&](FaceId f) {
+        std::vector<Mark>& list = marks[f];
+        if (list.empty() || list.back().strand != &strand) list.push_back({&strand, strand.image[i]});
+      });
+  const auto apart = [&](const Mark& a, const Mark& b, double edge) {
+    const bool adjacent = a.strand->from == b.strand->from || a.strand->from == b.strand->to ||
+                          a.strand->to == b.strand->from || a.strand->to == b.strand->to;
+    return !adjacent &&
+           std::abs(a.image - b.image) >
+               std::max(far_edges * edge * std::max(a.strand->scale, b.strand->scale), far_share * extent);
+  };
+  std::unordered_map<FaceId, std::uint32_t> sheets;
+  for (const auto& [f, list] : marks) {
+    const auto corners = mesh.corners(f);
+    const double edge = std::max({(corners[1] - corners[0]).norm(), (corners[2] - corners[1]).norm(),
+                                  (corners[0] - corners[2]).norm()});
+    std::vector<const Mark*> distinct;
+    for (const Mark& mark : list)
+      if (std::all_of(distinct.begin(), distinct.end(),
+                      [&](const Mark* other) { return apart(mark, *other, edge); }))
+        distinct.push_back(&mark);
+    sheets[f] = static_cast<std::uint32_t>(distinct.size());
+  }
+  return sheets;
+}
+
+/// The disc in the making, and how often it may cover each face.
+class Thickening {
+ public:
+  Thickening(BridgedSurface& surface, std::span<const SeedFeature> features,
+             std::unordered_map<FaceId, std::uint32_t> sheets)
+      : features_(features), sheets_(std::move(sheets)), disc_(surface, features[0].surface.face) {
+    place_new_vertices(features[0].image);
+    disc_.pin(PatchFaceId(0));
+  }
+
+  /// Grows the disc along the strand, from the patch face `start`, and returns the face over its end, pinned.
+  /// Where the way on is covered already, by a branch of the same sheet that came this way, the walk goes on
+  /// from that branch's vertex.
+  PatchFaceId add_strand(PatchFaceId start, const Strand& strand) {
+    const auto& corners = disc_.faces()[start].vertices;
+    PatchVertexId at = *std::find_if(corners.begin(), corners.end(), [&](PatchVertexId v) {
+      return disc_.mesh_vertex(v) == strand.path.front();
+    });
+    for (std::size_t i = 0; i < strand.path.size(); ++i) {
+      at = disc_.complete_fan(at, [&](FaceId f) { return limit(f); });
+      place_new_vertices(strand.image[i]);
+      if (i + 1 == strand.path.size()) break;
+      const PatchVertexId next = neighbour_over(at, strand.path[i + 1]);
+      at = next.valid() ? next : vertex_over(strand.path[i + 1], strand.image[i + 1]);
+      APPLIQUE_ASSERT(at.valid());  // a face beside the path's edge is glued, or covered and so in the disc
+    }
+    const SeedFeature& end = features_[strand.to];
+    PatchFaceId found;
+    for (PatchFaceId q : disc_.fan(at))
+      if (disc_.faces()[q].mesh_face == end.surface.face) found = q;
+    if (!found.valid()) found = face_over(end.surface.face, end.image);
+    APPLIQUE_ASSERT(found.valid());
+    disc_.pin(found);
+    return found;
+  }
+
+  void add_ring() {
+    const std::size_t count = disc_.faces().size();
+    for (PatchFaceId q : ids<PatchFaceId>(count))
+      for (int k = 0; k < 3; ++k) {
+        if (disc_.faces()[q].neighbours[k].valid()) continue;
+        const PatchVertexId beside = disc_.faces()[q].vertices[(k + 1) % 3];
+        disc_.glue(q, k, limit(disc_.surface().neighbour(disc_.faces()[q].mesh_face, k)));
+        place_new_vertices(image_[beside]);
+      }
+  }
+
+  Seed finish(std::vector<PatchFaceId> feature_faces) && {
+    const ImmersedDisc::Renumbering map = disc_.compact();
+    for (PatchFaceId& q : feature_faces) q = map.faces[q];
+    Seed seed{std::move(disc_), std::move(feature_faces), {}, {}, 1};
+    seed.image.resize(seed.disc.vertex_count());
+    for (PatchVertexId v : ids<PatchVertexId>(map.vertices.size()))
+      if (map.vertices[v].valid()) seed.image[map.vertices[v]] = image_[v];
+    for (const auto& [f, count] : sheets_) seed.sheets = std::max(seed.sheets, count);
+    return seed;
+  }
+
+ private:
+  [[nodiscard]] std::uint32_t limit(FaceId f) const {
+    const auto sheets = sheets_.find(f);
+    return sheets == sheets_.end() ? 1 : sheets->second;
+  }
+
+  void place_new_vertices(Vec2 image) { image_.resize(disc_.vertex_count(), image); }
+
+  [[nodiscard]] PatchVertexId neighbour_over(PatchVertexId v, VertexId target) const {
+    for (PatchFaceId q : disc_.fan(v))
+      for (PatchVertexId w : disc_.faces()[q].vertices)
+        if (disc_.mesh_vertex(w) == target) return w;
+    return {};
+  }
+
+  /// The vertex over `target` that is nearest in the image.
+  [[nodiscard]] PatchVertexId vertex_over(VertexId target, Vec2 image) const {
+    PatchVertexId nearest;
+    for (PatchVertexId v : ids<PatchVertexId>(disc_.vertex_count()))
+      if (disc_.alive(v) && disc_.mesh_vertex(v) == target &&
+          (!nearest.valid() || std::abs(image_[v] - image) < std::abs(image_[nearest] - image)))
+        nearest = v;
+    return nearest;
+  }
+
+  [[nodiscard]] PatchFaceId face_over(FaceId target, Vec2 image) const {
+    PatchFaceId nearest;
+    const auto distance = [&](PatchFaceId q) {
+      return std::abs(image_[disc_.faces()[q].vertices[0]] - image);
+    };
+    for (PatchFaceId q : ids<PatchFaceId>(disc_.faces().size()))
+      if (disc_.alive(q) && disc_.faces()[q].mesh_face == target &&
+          (!nearest.valid() || distance(q) < distance(nearest)))
+        nearest = q;
+    return nearest;
+  }
+
+  std::span<const SeedFeature> features_;
+  std::unordered_map<FaceId, std::uint32_t> sheets_;  // 1 where not named
+  ImmersedDisc disc_;
+  IdVector<PatchVertexId, Vec2> image_;
+};
+
+}  // namespace
+
+tl::expected<Seed, SeedFailure> build_seed(BridgedSurface& surface, std::span<const SeedFeature> features,
+                                           std::span<const FeaturePair> tree) {
+  auto strands = lay_strands(surface.mesh(), features, tree);
+  if (!strands) return tl::unexpected(strands.error());
+  Thickening thickening(surface, features, count_sheets(surface.mesh(), *strands));
+  std::vector<PatchFaceId> feature_faces(features.size());
+  feature_faces[0] = PatchFaceId(0);
+  for (const Strand& strand : *strands)
+    feature_faces[strand.to] = thickening.add_strand(feature_faces[strand.from], strand);
+  thickening.add_ring();
+  Seed seed = std::move(thickening).finish(std::move(feature_faces));
+  seed.paths.resize(tree.size());
+  for (Strand& strand : *strands) seed.paths[strand.edge] = std::move(strand.path);
   return seed;
 }
 

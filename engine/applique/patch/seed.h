@@ -11,19 +11,29 @@ namespace applique {
 
 /// The patch to start from: shortest paths over the surface along the feature graph's tree, thickened (§2.3
 /// of the design). The paper (§4.2, §4.3) fills the faces of the graph instead and asks the artist for more
-/// features where their paths cross; a thickened tree is a disc for any features, so nobody is asked.
+/// features where their paths cross; a thickened tree is a disc for any features, so nobody is asked. Where
+/// paths lie over one another the patch has several sheets (§4.2, Fig. 7).
 struct Seed {
   ImmersedDisc disc;
   std::vector<PatchFaceId> feature_faces;    ///< The patch face over each feature, pinned.
   std::vector<std::vector<VertexId>> paths;  ///< By edge of the tree: the surface vertices passed.
+  IdVector<PatchVertexId, Vec2> image;       ///< Where about in the image the vertices are (§4.3).
+  std::uint32_t sheets = 1;                  ///< How often the paths cover a face at most.
 };
 
-/// `features` lie on faces of the surface's mesh and `tree` spans them. Every surface face is covered at most
-/// `cover_limit` times. Fails, naming a pair, only when two features lie on parts that are not connected.
+/// A feature as the seed sees it.
+struct SeedFeature {
+  SurfacePoint surface;  ///< On a face of the surface's mesh.
+  Vec2 image;            ///< Plane units.
+};
+
+/// `tree` spans the features. Paths that come near one another on the surface are one sheet, in which every
+/// face is covered once, unless they are far apart in the image: then each has a sheet of its own there.
+/// Fails, naming a pair, only when two features lie on parts that are not connected.
 struct SeedFailure {
   FeaturePair disconnected;
 };
-tl::expected<Seed, SeedFailure> build_seed(BridgedSurface& surface, std::span<const SurfacePoint> features,
-                                           std::span<const FeaturePair> tree, std::uint32_t cover_limit);
+tl::expected<Seed, SeedFailure> build_seed(BridgedSurface& surface, std::span<const SeedFeature> features,
+                                           std::span<const FeaturePair> tree);
 
 }  // namespace applique

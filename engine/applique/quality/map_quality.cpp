@@ -25,13 +25,23 @@ Singular singular_values(const std::array<Vec3, 3>& q, const std::array<Vec2, 3>
 }
 
 /// Whether the warp reverses orientation at a corner of the triangle or in its middle, by central
-/// differences.
-bool turns_over(const Warp& warp, const std::array<Vec2, 3>& triangle) {
+/// differences. `influence` of the groups at each corner; linear between.
+bool turns_over(const Warp& warp, const std::array<Vec2, 3>& triangle,
+                const std::array<std::span<const double>, 3>& influence) {
+  const Vec2 e1 = triangle[1] - triangle[0], e2 = triangle[2] - triangle[0];
+  std::vector<double> there(influence[0].size());
+  const auto warped = [&](Vec2 z) {
+    const double u = cross(z - triangle[0], e2) / cross(e1, e2);
+    const double v = cross(e1, z - triangle[0]) / cross(e1, e2);
+    for (std::size_t g = 0; g < there.size(); ++g)
+      there[g] = (1 - u - v) * influence[0][g] + u * influence[1][g] + v * influence[2][g];
+    return warp(z, there);
+  };
   constexpr double step = 1e-6;
   for (const Vec2 z :
        {triangle[0], triangle[1], triangle[2], (triangle[0] + triangle[1] + triangle[2]) / 3.0}) {
-    const Vec2 along_x = warp(z + step) - warp(z - step);
-    const Vec2 along_y = warp(z + Vec2(0, step)) - warp(z - Vec2(0, step));
+    const Vec2 along_x = warped(z + step) - warped(z - step);
+    const Vec2 along_y = warped(z + Vec2(0, step)) - warped(z - Vec2(0, step));
     if (cross(along_x, along_y) <= 0) return true;
   }
   return false;
@@ -69,8 +79,12 @@ MapQuality measure_quality(const SurfaceMesh& surface, const Patch& patch,
                            const IdVector<PatchVertexId, Vec2>& plane,
                            const IdVector<PatchVertexId, Vec2>& image,
                            const IdVector<PatchFaceId, char>& textured, const Warp& warp,
-                           const Region& region) {
+                           const Region& region, std::span<const double> influence) {
   MapQuality quality;
+  const auto influence_at = [&](PatchVertexId v) {
+    return warp.groups > 1 ? influence.subspan(std::size_t{v.value} * warp.groups, warp.groups)
+                           : std::span<const double>();
+  };
   struct Measured {
     Singular singular;
     double area;  ///< On the surface, under the region.
@@ -85,7 +99,8 @@ MapQuality measure_quality(const SurfaceMesh& surface, const Patch& patch,
     quality.flipped_plane += flipped;
     const std::array<Vec2, 3> p = {image[v[0]], image[v[1]], image[v[2]]};
     if (orientation(p[0], p[1], p[2]) <= 0) {
-      quality.flipped_image += flipped || turns_over(warp, flat);
+      quality.flipped_image +=
+          flipped || turns_over(warp, flat, {influence_at(v[0]), influence_at(v[1]), influence_at(v[2])});
       continue;
     }
     const std::array<Vec3, 3> corners = surface.corners(patch.faces[q].mesh_face);

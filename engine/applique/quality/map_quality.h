@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "applique/base/types.h"
@@ -29,12 +30,12 @@ struct MapQuality {
 };
 
 /// All but the residuals. `plane` and `image` per patch vertex; only faces marked in `textured` are looked
-/// at.
+/// at. `influence`, [vertex * groups + group], is not looked at when the warp has one group.
 MapQuality measure_quality(const SurfaceMesh& surface, const Patch& patch,
                            const IdVector<PatchVertexId, Vec2>& plane,
                            const IdVector<PatchVertexId, Vec2>& image,
                            const IdVector<PatchFaceId, char>& textured, const Warp& warp,
-                           const Region& region);
+                           const Region& region, std::span<const double> influence = {});
 
 /// The area that a triangle, counter-clockwise, has in common with the region.
 double area_in_region(const Region& region, const std::array<Vec2, 3>& triangle);

@@ -21,23 +21,6 @@ struct Reached {
   bool settled = false;
 };
 
-/// Calls visit(w) for each neighbour w of v.
-template <class Visit>
-void for_each_neighbour(const SurfaceMesh& mesh, VertexId v, Visit visit) {
-  const FaceId first = mesh.vertex_face[v];
-  for (int way = 0; way < 2; ++way) {
-    FaceId f = first;
-    do {
-      const auto& corners = mesh.faces[f];
-      const int c = corners[0] == v ? 0 : corners[1] == v ? 1 : 2;
-      visit(corners[(c + 1) % 3]);
-      visit(corners[(c + 2) % 3]);
-      f = mesh.neighbours[f][way == 0 ? (c + 2) % 3 : (c + 1) % 3];
-    } while (f.valid() && f != first);
-    if (f.valid()) return;  // a closed fan: one way is enough
-  }
-}
-
 }  // namespace
 
 std::vector<VertexId> shortest_path(const SurfaceMesh& mesh, const SurfacePoint& from,
@@ -75,8 +58,10 @@ std::vector<VertexId> shortest_path(const SurfaceMesh& mesh, const SurfacePoint&
         end = v;
       }
     }
-    for_each_neighbour(
-        mesh, v, [&](VertexId w) { reach(w, v, distance + (mesh.positions[w] - mesh.positions[v]).norm()); });
+    for_each_face(mesh, v, [&](FaceId f) {
+      for (VertexId w : mesh.faces[f])
+        if (w != v) reach(w, v, distance + (mesh.positions[w] - mesh.positions[v]).norm());
+    });
   }
   std::vector<VertexId> path;
   for (VertexId v = end; v.valid(); v = reached.at(v).previous) path.push_back(v);

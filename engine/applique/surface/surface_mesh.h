@@ -41,6 +41,22 @@ struct SurfaceMesh {
 SurfaceMesh weld_surface(std::span<const Vec3> positions,
                          std::span<const std::array<std::uint32_t, 3>> triangles);
 
+/// Calls visit(f) for each face at v, once.
+template <class Visit>
+void for_each_face(const SurfaceMesh& mesh, VertexId v, Visit visit) {
+  const FaceId first = mesh.vertex_face[v];
+  for (int way = 0; way < 2; ++way) {
+    FaceId f = first;
+    do {
+      if (way == 0 || f != first) visit(f);
+      const auto& corners = mesh.faces[f];
+      const int c = corners[0] == v ? 0 : corners[1] == v ? 1 : 2;
+      f = mesh.neighbours[f][way == 0 ? (c + 2) % 3 : (c + 1) % 3];
+    } while (f.valid() && f != first);
+    if (f.valid()) return;  // a closed fan: one way is enough
+  }
+}
+
 /// A point of the surface: a face and weights of its corners, >= 0, sum 1.
 struct SurfacePoint {
   FaceId face;

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <optional>
+#include <set>
 
 namespace applique {
 namespace {
@@ -254,7 +254,14 @@ Footprint footprint_of(const AffineMap& map, std::size_t levels) {
 
 }  // namespace
 
-TilePlan plan_tile(const Transfer& transfer, int width, int height, const TexelRect& tile) {
+std::vector<std::uint32_t> sheets_of(const Transfer& transfer) {
+  std::set<std::uint32_t> sheets;
+  for (const TransferFace& face : transfer.faces) sheets.insert(face.sheet);
+  return {sheets.begin(), sheets.end()};
+}
+
+TilePlan plan_tile(const Transfer& transfer, int width, int height, const TexelRect& tile,
+                   std::uint32_t sheet) {
   const int gutter = static_cast<int>(std::min(transfer.gutter, 255u));
   TilePlan plan;
 
@@ -266,16 +273,11 @@ TilePlan plan_tile(const Transfer& transfer, int width, int height, const TexelR
     return TexelRect{x0, y0, x1 - x0, y1 - y0};
   };
 
-  std::vector<std::uint32_t> order(transfer.faces.size());
-  std::iota(order.begin(), order.end(), 0u);
-  std::stable_sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
-    return transfer.faces[a].sheet < transfer.faces[b].sheet;
-  });
-
   std::vector<FixedCorners> fixed;
   const TexelRect window = with_margin(tile);
   int x0 = tile.x + tile.width, y0 = tile.y + tile.height, x1 = tile.x, y1 = tile.y;
-  for (std::uint32_t face : order) {
+  for (std::uint32_t face = 0; face < transfer.faces.size(); ++face) {
+    if (transfer.faces[face].sheet != sheet) continue;
     const auto& corners = transfer.faces[face].texel;
     for_each_copy(transfer, corners, width, height, window,
                   [&](const AxisCopy& x, const AxisCopy& y, const Bounds& bounds) {
@@ -311,14 +313,24 @@ TilePlan plan_tile(const Transfer& transfer, int width, int height, const TexelR
   plan.blocks = changed.list();
   plan.nearest_blocks = changed.dilated(0, reach).list();
 
-  for (const auto& corners : transfer.foreign) {
+  const auto mark = [&](const std::array<Texel, 3>& corners, std::uint32_t bit) {
     for_each_copy(transfer, corners, width, height, plan.region,
                   [&](const AxisCopy& x, const AxisCopy& y, const Bounds&) {
-                    add_jobs(fixed_corners(corners, x, y), shader::foreign_bit, plan.region, &seen,
-                             plan.foreign_jobs);
+                    add_jobs(fixed_corners(corners, x, y), bit, plan.region, &seen, plan.foreign_jobs);
                   });
-  }
+  };
+  for (const auto& corners : transfer.foreign) mark(corners, shader::foreign_bit);
+  for (const TransferFace& face : transfer.faces)
+    if (face.sheet != sheet) mark(face.texel, shader::sheet_bit);
   return plan;
+}
+
+int working_bits(const Image& texture, std::size_t sheets) {
+  return sheets > 1 ? 16 : texture.bits;
+}
+
+void round_to_8_bits(Image& texture) {
+  for (std::uint16_t& value : texture.rgba) value = static_cast<std::uint16_t>((value + 128) / 257 * 257);
 }
 
 PlacedFace place_face(const Transfer& transfer, const Placement& placement, int cells) {
@@ -343,8 +355,9 @@ PlacedFace place_face(const Transfer& transfer, const Placement& placement, int 
   const AffineMap to_pixels = affine_map(corners, pixels);
   placed.footprint = footprint_of(to_pixels, transfer.image->levels.size());
   placed.warped = !face.linear && transfer.warp && transfer.warp->steps > 0;
-  const double n = cells;
-  placed.map = cells > 0       ? affine_map(corners, {{{0, 0}, {n, 0}, {0, n}}})
+  const bool in_grid = cells > 0 || (placed.warped && transfer.warp->groups > 1);
+  const double n = std::max(cells, 1);
+  placed.map = in_grid         ? affine_map(corners, {{{0, 0}, {n, 0}, {0, n}}})
                : placed.warped ? affine_map(corners, plane)
                                : to_pixels;
   placed.clamped = std::abs(triangle_area2(corners)) < longest;

@@ -21,26 +21,35 @@ struct Placement {
   std::array<Texel, 3> corners;  ///< Region texels.
 };
 
-/// What is to be drawn in one tile of a texture, the same for the GPU and for the CPU. The *work* are the
-/// tile's texels that may change; the *region* is the work with a margin of the gutter's width, in which
-/// owners are needed. Where an axis repeats, the region may reach over the border: it lies in the texture's
-/// unwrapped plane.
+/// What is to be drawn of one sheet in one tile of a texture, the same for the GPU and for the CPU. The
+/// *work* are the tile's texels that may change; the *region* is the work with a margin of the gutter's
+/// width, in which owners are needed. Where an axis repeats, the region may reach over the border: it lies in
+/// the texture's unwrapped plane.
 struct TilePlan {
-  TexelRect work;                       ///< In the texture. Empty: nothing to do.
-  TexelRect region;                     ///< In the unwrapped plane.
-  std::vector<Placement> placements;    ///< From below to above: key k is placement k - 1.
-  std::vector<shader::RasterJob> jobs;  ///< Of the faces.
-  std::vector<shader::RasterJob> foreign_jobs;
+  TexelRect work;                               ///< In the texture. Empty: nothing to do.
+  TexelRect region;                             ///< In the unwrapped plane.
+  std::vector<Placement> placements;            ///< Key k is placement k - 1.
+  std::vector<shader::RasterJob> jobs;          ///< Of the sheet's faces.
+  std::vector<shader::RasterJob> foreign_jobs;  ///< Of the other sheets' faces and of foreign triangles.
   std::vector<std::uint32_t> blocks;  ///< Blocks that may change: x | y << 16, in blocks of the region.
   std::vector<std::uint32_t> nearest_blocks;  ///< Blocks whose row-wise nearest texels those need.
 };
 
-/// Plans the part of a transfer that lies in `tile`, a rectangle of the texture (at most 65536 texels a
-/// side).
+/// The ranks that faces of the transfer have, from below to above: what is composited one after the other.
+std::vector<std::uint32_t> sheets_of(const Transfer& transfer);
+
+/// Plans the part of a sheet that lies in `tile`, a rectangle of the texture (at most 65536 texels a side).
+/// The transfer's other sheets keep the gutter out, as foreign triangles do, but are not UV overlap.
 ///
 /// Coverage is decided with corners rounded to 1/256 texel and exact integer edge functions; of two triangles
 /// on either side of an edge through a texel's centre, one has it.
-TilePlan plan_tile(const Transfer& transfer, int texture_width, int texture_height, const TexelRect& tile);
+TilePlan plan_tile(const Transfer& transfer, int texture_width, int texture_height, const TexelRect& tile,
+                   std::uint32_t sheet = 0);
+
+/// Sheets over each other are composited at 16 bits, whatever the texture has: so 8 bits are rounded to once,
+/// when all are done.
+int working_bits(const Image& texture, std::size_t sheets);
+void round_to_8_bits(Image& texture);
 
 /// The affine map of a placement, from region texels' centres to the plane or to pixels.
 struct AffineMap {
@@ -63,7 +72,7 @@ struct Footprint {
 /// All that both twins derive from a placement.
 struct PlacedFace {
   /// To the plane where the face needs the warp, or, where it is refined, to steps of its grid; else to
-  /// pixels.
+  /// pixels. A warp with groups needs more than a plane point: there, to the place in a grid of one cell.
   AffineMap map;
   Footprint footprint;
   bool warped = false;

@@ -18,7 +18,7 @@ std::size_t point_count(int cells) {
 }
 
 // The grid of twice as many cells: the points that there are, and the warp at the new ones.
-std::vector<Pixel> doubled(const Transfer& transfer, const TransferFace& face, int cells,
+std::vector<Pixel> doubled(const Transfer& transfer, std::size_t face, int cells,
                            const std::vector<Pixel>& points) {
   const int fine = 2 * cells;
   std::vector<Pixel> result;
@@ -29,10 +29,8 @@ std::vector<Pixel> doubled(const Transfer& transfer, const TransferFace& face, i
         result.push_back(points[RefinedFace::index(cells, i / 2, j / 2)]);
         continue;
       }
-      const double u = static_cast<double>(i) / fine, v = static_cast<double>(j) / fine;
-      const Vec2 p =
-          face.plane[0] + u * (face.plane[1] - face.plane[0]) + v * (face.plane[2] - face.plane[0]);
-      result.push_back(transfer.image->frame.to_pixel((*transfer.warp)(p)));
+      result.push_back(
+          warp_in_face(transfer, face, static_cast<double>(i) / fine, static_cast<double>(j) / fine));
     }
   }
   return result;
@@ -55,18 +53,20 @@ double deviation(int fine, const std::vector<Pixel>& points) {
   return largest;
 }
 
-RefinedFace refine_face(const Transfer& transfer, const TransferFace& face) {
-  const auto& t = face.texel;
+RefinedFace refine_face(const Transfer& transfer, std::size_t face) {
+  const auto& t = transfer.faces[face].texel;
   const double texels =
       0.5 * std::abs((t[1][0] - t[0][0]) * (t[2][1] - t[0][1]) - (t[1][1] - t[0][1]) * (t[2][0] - t[0][0]));
   RefinedFace refined;
-  for (const int corner : {0, 1, 2}) {
-    refined.points.push_back(transfer.image->frame.to_pixel((*transfer.warp)(face.plane[corner])));
-  }
+  for (const Vec2 image : transfer.faces[face].image)
+    refined.points.push_back(transfer.image->frame.to_pixel(image));
+  // A share that rises from nothing to all across the face is right in its middle by symmetry: with groups,
+  // the first look is finer.
+  const int coarsest = transfer.warp->groups > 1 ? 2 : 1;
   for (int cells = 1; cells < most_cells && static_cast<double>(point_count(2 * cells)) < texels;
        cells *= 2) {
     refined.points = doubled(transfer, face, cells, refined.points);
-    if (deviation(2 * cells, refined.points) > coarse_tolerance) continue;
+    if (cells < coarsest || deviation(2 * cells, refined.points) > coarse_tolerance) continue;
     refined.cells = 2 * cells;
     return refined;
   }
@@ -88,11 +88,25 @@ Pixel RefinedFace::at(double x, double y) const {
           corner.y + fx * (along.y - corner.y) + fy * (across.y - corner.y)};
 }
 
+Pixel warp_in_face(const Transfer& transfer, std::size_t face, double u, double v) {
+  const auto& plane = transfer.faces[face].plane;
+  const Vec2 p = plane[0] + u * (plane[1] - plane[0]) + v * (plane[2] - plane[0]);
+  const std::size_t groups = transfer.warp->groups;
+  std::vector<double> influence;
+  for (std::size_t g = 0; g < groups && groups > 1; ++g) {
+    const double* corner = &transfer.influence[3 * face * groups + g];
+    influence.push_back(corner[0] + u * (corner[groups] - corner[0]) + v * (corner[2 * groups] - corner[0]));
+  }
+  return transfer.image->frame.to_pixel((*transfer.warp)(p, influence));
+}
+
 std::vector<RefinedFace> refine_faces(const Transfer& transfer) {
   std::vector<RefinedFace> refined(transfer.faces.size());
   if (!transfer.warp || transfer.warp->steps == 0) return refined;
+  APPLIQUE_ASSERT(transfer.warp->groups == 1 ||
+                  transfer.influence.size() == 3 * transfer.faces.size() * transfer.warp->groups);
   parallel_for(static_cast<int>(refined.size()), [&](int i) {
-    if (!transfer.faces[i].linear) refined[i] = refine_face(transfer, transfer.faces[i]);
+    if (!transfer.faces[i].linear) refined[i] = refine_face(transfer, static_cast<std::size_t>(i));
   });
   return refined;
 }

@@ -18,6 +18,10 @@ struct RefinedFace {
   [[nodiscard]] Pixel at(double x, double y) const;
 };
 
+/// The exact image point of a place in face `face`, u of the way from corner 0 to corner 1 and v to corner 2:
+/// the warp, told the influence there.
+Pixel warp_in_face(const Transfer& transfer, std::size_t face, double u, double v);
+
 /// Cuts every face that is not linear so finely that interpolating between `points` stays within 0.02 pixel
 /// of the warp: the grid of half as many cells is within 0.04 pixel at the midpoints of all its edges, and
 /// halving quarters the error of a smooth map. A face stays uncut where that would take more points than it

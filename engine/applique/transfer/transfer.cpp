@@ -35,7 +35,7 @@ void cover(const std::vector<shader::RasterJob>& jobs, Ownership& ownership) {
         if (!inside) continue;
         std::uint32_t& owner =
             ownership.owner[static_cast<std::size_t>(y0 + y) * ownership.region.width + x0 + x];
-        owner = job.key == shader::foreign_bit ? owner | job.key : std::max(owner, job.key);
+        owner = (job.key & shader::key_mask) == 0 ? owner | job.key : std::max(owner, job.key);
       }
     }
   }
@@ -132,12 +132,11 @@ void blend_over(std::uint16_t* texel, const Colour& source, const Transfer& tran
   }
 }
 
-}  // namespace
-
-TransferResult transfer_on_cpu(const Transfer& transfer, Image& texture, bool keep_samples) {
+// `refined` by face. Adds to `total`.
+void composite_sheet(const Transfer& transfer, std::uint32_t sheet, const std::vector<RefinedFace>& refined,
+                     int bits, bool keep_samples, Image& texture, TransferResult& total) {
   const TilePlan plan =
-      plan_tile(transfer, texture.width, texture.height, {0, 0, texture.width, texture.height});
-  if (plan.work.width == 0) return {};
+      plan_tile(transfer, texture.width, texture.height, {0, 0, texture.width, texture.height}, sheet);
   const int gutter = static_cast<int>(std::min(transfer.gutter, 255u));
   const TexelRect &work = plan.work, &region = plan.region;
 
@@ -148,7 +147,6 @@ TransferResult transfer_on_cpu(const Transfer& transfer, Image& texture, bool ke
   cover(plan.foreign_jobs, ownership);
   parallel_for(region.height, [&](int y) { find_nearest_in_row(y, gutter, ownership); });
 
-  const std::vector<RefinedFace> refined = refine_faces(transfer);
   std::vector<PlacedFace> faces;
   faces.reserve(plan.placements.size());
   for (const Placement& placement : plan.placements) {
@@ -175,31 +173,44 @@ TransferResult transfer_on_cpu(const Transfer& transfer, Image& texture, bool ke
 
       const PlacedFace& face = faces[key - 1];
       const auto place = face.clamped ? face.map.at(seed[0], seed[1]) : face.map.at(x, y);
-      const RefinedFace& grid = refined[plan.placements[key - 1].face];
-      const Pixel pixel = grid.cells > 0 ? grid.at(place[0], place[1])
-                          : face.warped
-                              ? transfer.image->frame.to_pixel((*transfer.warp)({place[0], place[1]}))
-                              : Pixel{place[0], place[1]};
+      const std::uint32_t index = plan.placements[key - 1].face;
+      Pixel pixel = {place[0], place[1]};
+      if (refined[index].cells > 0)
+        pixel = refined[index].at(place[0], place[1]);
+      else if (face.warped && transfer.warp->groups > 1)
+        pixel = warp_in_face(transfer, index, place[0], place[1]);
+      else if (face.warped)
+        pixel = transfer.image->frame.to_pixel((*transfer.warp)({place[0], place[1]}));
       if (keep_samples && !outside) {
-        result.samples.push_back(
-            {static_cast<std::uint32_t>(column + work.x), static_cast<std::uint32_t>(row + work.y), pixel});
+        result.samples.push_back({static_cast<std::uint32_t>(column + work.x),
+                                  static_cast<std::uint32_t>(row + work.y), sheet, pixel});
       }
       Colour source = sample_decal(*transfer.image, pixel, face.footprint);
       for (double& channel : source) channel *= transfer.opacity;
-      if (source[3] > 0)
-        blend_over(texture.pixel(column + work.x, row + work.y), source, transfer, texture.bits);
+      if (source[3] > 0) blend_over(texture.pixel(column + work.x, row + work.y), source, transfer, bits);
     }
   });
 
-  TransferResult total;
   for (const TransferResult& row : rows) {
     total.covered_texels += row.covered_texels;
     total.gutter_texels += row.gutter_texels;
     total.shared_texels += row.shared_texels;
     total.samples.insert(total.samples.end(), row.samples.begin(), row.samples.end());
   }
-  if (texture.channels < 3) texture.channels += 2;
-  return total;
+}
+
+}  // namespace
+
+TransferResult transfer_on_cpu(const Transfer& transfer, Image& texture, bool keep_samples) {
+  const std::vector<RefinedFace> refined = refine_faces(transfer);
+  const std::vector<std::uint32_t> sheets = sheets_of(transfer);
+  const int bits = working_bits(texture, sheets.size());
+  TransferResult result;
+  for (const std::uint32_t sheet : sheets)
+    composite_sheet(transfer, sheet, refined, bits, keep_samples, texture, result);
+  if (bits != texture.bits) round_to_8_bits(texture);
+  if (texture.channels < 3 && result.covered_texels + result.gutter_texels > 0) texture.channels += 2;
+  return result;
 }
 
 }  // namespace applique

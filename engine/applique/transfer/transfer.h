@@ -25,12 +25,13 @@ enum class BlendMode : std::uint32_t { normal, multiply, screen };
 struct TransferFace {
   std::array<Texel, 3> texel;  ///< Either orientation.
   std::array<Vec2, 3> plane;
-  std::array<Vec2, 3> image;  ///< warp(plane), plane units (ImageFrame turns them into pixels).
+  std::array<Vec2, 3> image;  ///< The warp's image of `plane`, plane units (ImageFrame makes them pixels).
   bool linear = true;
-  std::uint32_t sheet = 0;  ///< Rank by depth among overlapping patch faces: larger is above.
+  std::uint32_t sheet = 0;  ///< Rank by depth among the patch faces over one surface face: larger is above.
 };
 
-/// One decal's share of one texture.
+/// One decal's share of one texture. Its sheets are composited one after the other, the lowest first: a lower
+/// one shows where an upper one is transparent. A sheet has no gutter where another sheet's faces go on.
 struct Transfer {
   std::vector<TransferFace> faces;
   std::vector<std::array<Texel, 3>> foreign;  ///< UV triangles that use the texture and are not in `faces`.
@@ -48,16 +49,18 @@ struct Transfer {
   bool opaque = true;  ///< The material ignores the texture's alpha: colours blend as over opaque texels.
 };
 
-/// What a transfer did, and, when asked for, the image point of each covered texel.
+/// What a transfer did, and, when asked for, the image point of each covered texel. A texel counts once for
+/// every sheet that has it.
 struct TransferResult {
   std::uint64_t covered_texels = 0;  ///< Texels whose centre lies in a face.
   std::uint64_t gutter_texels = 0;   ///< Texels outside every island that were filled.
   std::uint64_t shared_texels = 0;   ///< Covered texels that a foreign triangle covers too (UV overlap).
   struct Sample {
     std::uint32_t x, y;  ///< The texel, wrapped.
+    std::uint32_t sheet;
     Pixel image;
   };
-  std::vector<Sample> samples;  ///< Row by row; empty unless asked for.
+  std::vector<Sample> samples;  ///< From the lowest sheet up, each row by row; empty unless asked for.
 };
 
 /// The double-precision CPU twin of GpuTransfer: composites the decal into `texture`, in place. Texels that

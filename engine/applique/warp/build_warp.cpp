@@ -15,26 +15,32 @@ constexpr double collision = 0.05;  // share of its length below which a pair is
 constexpr double extreme_scale = 4;
 constexpr double extreme_turn = 2 * std::numbers::pi / 3;
 
-/// Visible pairs, and for a feature that sees none its artificial ones.
-std::vector<FeaturePair> warp_pairs(const FeatureGraph& graph, std::size_t features) {
-  std::vector<char> paired(features, false);
-  for (const auto& [i, j] : graph.visible) paired[i] = paired[j] = true;
+/// Visible pairs, and for a feature that sees none its artificial ones. Those of groups that do not meet move
+/// nothing.
+std::vector<FeaturePair> warp_pairs(const FeatureGraph& graph, std::size_t features,
+                                    const FeatureGroups& groups) {
   std::vector<FeaturePair> pairs = graph.visible;
+  std::erase_if(pairs, [&](const FeaturePair& pair) { return groups.apart(pair); });
+  std::vector<char> paired(features, false);
+  for (const auto& [i, j] : pairs) paired[i] = paired[j] = true;
   for (const FeaturePair& pair : graph.artificial)
     if (!paired[pair[0]] || !paired[pair[1]]) pairs.push_back(pair);
   return pairs;
 }
 
-/// Leaves out pairs that nearly collide on the way, as long as both features keep another.
-void drop_colliding(std::vector<FeaturePair>& pairs, const std::vector<std::vector<Vec2>>& keyframes) {
+/// Leaves out pairs that nearly collide on the way, as long as both features keep another in their group.
+void drop_colliding(std::vector<FeaturePair>& pairs, const std::vector<std::vector<Vec2>>& keyframes,
+                    const FeatureGroups& groups) {
   std::vector<int> count(keyframes[0].size(), 0);
-  for (const auto& [i, j] : pairs) {
-    ++count[i];
-    ++count[j];
-  }
+  for (const auto& [i, j] : pairs)
+    if (groups.joins({i, j})) {
+      ++count[i];
+      ++count[j];
+    }
   std::erase_if(pairs, [&](const FeaturePair& pair) {
-    if (count[pair[0]] < 2 || count[pair[1]] < 2 || closest_approach(keyframes, pair) >= collision)
-      return false;
+    if (closest_approach(keyframes, pair) >= collision) return false;
+    if (!groups.joins(pair)) return true;
+    if (count[pair[0]] < 2 || count[pair[1]] < 2) return false;
     --count[pair[0]];
     --count[pair[1]];
     return true;
@@ -42,8 +48,10 @@ void drop_colliding(std::vector<FeaturePair>& pairs, const std::vector<std::vect
 }
 
 Warp tabulate(const std::vector<std::vector<Vec2>>& keyframes, const std::vector<FeaturePair>& pairs,
-              std::uint32_t steps) {
+              std::uint32_t steps, const FeatureGroups& groups) {
   Warp warp;
+  warp.groups = groups.count;
+  warp.group = groups.of;
   warp.steps = steps;
   warp.features = static_cast<std::uint32_t>(keyframes[0].size());
   warp.pairs = pairs;
@@ -74,13 +82,14 @@ Warp tabulate(const std::vector<std::vector<Vec2>>& keyframes, const std::vector
 }  // namespace
 
 BuiltWarp build_warp(std::span<const Vec2> from, std::span<const Vec2> to, const FeatureGraph& graph,
-                     std::span<const Vec2> probes, const WarpOptions& options) {
+                     std::span<const WarpProbe> probes, const FeatureGroups& groups,
+                     const WarpOptions& options) {
   BuiltWarp built;
   bool moves = false;
   for (std::size_t k = 0; k < from.size(); ++k) moves = moves || std::abs(to[k] - from[k]) > still;
   if (from.size() < 3 || !moves) return built;
 
-  std::vector<FeaturePair> pairs = warp_pairs(graph, from.size());
+  std::vector<FeaturePair> pairs = warp_pairs(graph, from.size(), groups);
   for (const FeaturePair& pair : pairs) {
     const Vec2 ratio = (to[pair[1]] - to[pair[0]]) / (from[pair[1]] - from[pair[0]]);
     const double scale = std::abs(ratio), turn = std::arg(ratio);
@@ -88,15 +97,16 @@ BuiltWarp build_warp(std::span<const Vec2> from, std::span<const Vec2> to, const
       built.stressed.push_back({pair, scale, turn});
   }
   const auto keyframes = feature_trajectories(from, to, graph, pairs);
-  drop_colliding(pairs, keyframes);
+  drop_colliding(pairs, keyframes, groups);
 
   const auto pieces = static_cast<std::uint32_t>(keyframes.size() - 1);
   std::uint32_t steps = std::max(least_steps, pieces);
-  built.warp = tabulate(keyframes, pairs, steps);
+  built.warp = tabulate(keyframes, pairs, steps, groups);
   while (2 * steps <= options.max_steps) {
-    Warp finer = tabulate(keyframes, pairs, 2 * steps);
+    Warp finer = tabulate(keyframes, pairs, 2 * steps, groups);
     double difference = 0;
-    for (Vec2 probe : probes) difference = std::max(difference, std::abs(finer(probe) - built.warp(probe)));
+    for (const auto& [plane, influence] : probes)
+      difference = std::max(difference, std::abs(finer(plane, influence) - built.warp(plane, influence)));
     if (difference <= options.tolerance) break;
     steps *= 2;
     built.warp = std::move(finer);

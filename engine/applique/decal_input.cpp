@@ -1,0 +1,90 @@
+#include "applique/decal_input.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+namespace applique {
+namespace {
+
+constexpr double on_contour = 1e-9;  // plane units
+constexpr double coincident = 1e-6;  // of the region's diameter
+
+std::string join(const std::vector<std::string>& names) {
+  std::string text;
+  for (std::size_t i = 0; i < names.size(); ++i)
+    text += (i == 0 ? "" : i + 1 == names.size() ? " and " : ", ") + names[i];
+  return text;
+}
+
+}  // namespace
+
+std::string feature_name(const DecalInput& input, std::size_t k) {
+  return fmt::format("feature {} at ({:.1f}, {:.1f})", k, input.features[k].image.x,
+                     input.features[k].image.y);
+}
+
+Result<void> check_input(const SurfaceMesh& surface, const DecalInput& input,
+                         const std::vector<Vec2>& targets, Overlap overlap) {
+  const std::string prefix = fmt::format("decal '{}': ", input.name);
+  if (input.features.empty())
+    return fail(ErrorCode::feature_place_invalid,
+                prefix + "has no features; pin at least one point of the image");
+  const double pixels = input.region.frame().pixels_per_unit();
+  for (std::size_t k = 0; k < input.features.size(); ++k) {
+    // A feature on a slanted edge of the contour may lie outside by rounding.
+    if (!input.region.contains(targets[k]) && input.region.signed_distance(targets[k]) < -on_contour)
+      return fail(
+          ErrorCode::feature_outside_region,
+          fmt::format("{}{}: outside the contour by {:.1f} px; move it inside or widen the region", prefix,
+                      feature_name(input, k), -input.region.signed_distance(targets[k]) * pixels));
+    for (std::size_t j = 0; j < k; ++j) {
+      if (std::abs(targets[k] - targets[j]) < coincident * input.region.diameter())
+        return fail(ErrorCode::features_coincide,
+                    fmt::format("{}{} and {} are on one spot of the image; remove one of them", prefix,
+                                feature_name(input, j), feature_name(input, k)));
+      const Vec3 a = position_of(surface, input.features[j].surface),
+                 b = position_of(surface, input.features[k].surface);
+      const auto corners = surface.corners(input.features[k].surface.face);
+      const double size = (corners[1] - corners[0]).norm() + (corners[2] - corners[0]).norm();
+      if (overlap == Overlap::stop && (a - b).norm() <= coincident * size)
+        return fail(
+            ErrorCode::features_coincide,
+            fmt::format("{}{} and {} are on one spot of the surface; remove one of them, or give the decal "
+                        "\"overlap\": \"allow\" if the image is to lie over itself there",
+                        prefix, feature_name(input, j), feature_name(input, k)));
+    }
+  }
+  if (input.features.size() == 1 && !(input.lone && input.lone->width > 0))
+    return fail(
+        ErrorCode::size_missing,
+        prefix +
+            "a single feature fixes neither size nor direction: give \"size\" (the image's width in scene "
+            "units, over 0) and \"up\" (a direction), or pin a second feature");
+  std::vector<std::vector<std::string>> parts;
+  std::vector<std::uint32_t> component;
+  for (std::size_t k = 0; k < input.features.size(); ++k) {
+    const std::uint32_t c = surface.component[surface.faces[input.features[k].surface.face][0]];
+    const auto part =
+        static_cast<std::size_t>(std::find(component.begin(), component.end(), c) - component.begin());
+    if (part == component.size()) {
+      component.push_back(c);
+      parts.emplace_back();
+    }
+    parts[part].push_back(feature_name(input, k));
+  }
+  if (parts.size() > 1) {
+    std::string text;
+    for (std::size_t i = 0; i < parts.size(); ++i) text += (i == 0 ? "" : " from ") + join(parts[i]);
+    return fail(
+        ErrorCode::features_disconnected,
+        fmt::format(
+            "{}the features lie on {} parts of the model that are not connected: {}; place them on one "
+            "connected part, or make a decal for each",
+            prefix, parts.size(), text));
+  }
+  return {};
+}
+
+}  // namespace applique

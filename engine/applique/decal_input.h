@@ -1,0 +1,20 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "applique/decal.h"
+
+namespace applique {
+
+/// How messages call feature k: "feature 3 at (120.5, 88.0)".
+std::string feature_name(const DecalInput& input, std::size_t k);
+
+/// What every method asks of its input. `targets`: the features' image points in the plane. Features may
+/// share a spot of the surface, not of the image, where the decal may lie over itself. Errors, each naming
+/// the decal and the features: feature_place_invalid, feature_outside_region, features_coincide,
+/// size_missing, features_disconnected.
+Result<void> check_input(const SurfaceMesh& surface, const DecalInput& input,
+                         const std::vector<Vec2>& targets, Overlap overlap = Overlap::stop);
+
+}  // namespace applique

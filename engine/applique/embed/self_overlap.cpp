@@ -1,0 +1,64 @@
+#include "applique/embed/self_overlap.h"
+
+#include <algorithm>
+#include <vector>
+
+#include "applique/base/predicates.h"
+
+namespace applique {
+namespace {
+
+constexpr double far_share = 0.1;  // of the region's diameter: as in growth
+
+struct RimEdge {
+  Vec2 from, to;
+  Vec2 image;  ///< Its middle.
+  double left, right;
+};
+
+/// The edges between faces that lie in the region and what does not.
+std::vector<RimEdge> find_rim(const ImmersedDisc& disc, const PatchPoints& points, const Region& region) {
+  IdVector<PatchVertexId, char> inside(disc.vertex_count(), false);
+  for (PatchVertexId v : ids<PatchVertexId>(disc.vertex_count()))
+    inside[v] = disc.alive(v) && region.contains(points[v].image);
+  const auto covered = [&](PatchFaceId q) {
+    const auto& v = disc.faces()[q].vertices;
+    return inside[v[0]] && inside[v[1]] && inside[v[2]];
+  };
+  std::vector<RimEdge> rim;
+  for (PatchFaceId q : ids<PatchFaceId>(disc.faces().size())) {
+    if (!disc.alive(q) || !covered(q)) continue;
+    const PatchFace& face = disc.faces()[q];
+    for (int k = 0; k < 3; ++k) {
+      if (face.neighbours[k].valid() && covered(face.neighbours[k])) continue;
+      const PatchPoint &a = points[face.vertices[(k + 1) % 3]], &b = points[face.vertices[(k + 2) % 3]];
+      const auto [left, right] = std::minmax(a.plane.real(), b.plane.real());
+      rim.push_back({a.plane, b.plane, 0.5 * (a.image + b.image), left, right});
+    }
+  }
+  return rim;
+}
+
+bool cross_properly(const RimEdge& e, const RimEdge& f) {
+  return orientation(e.from, e.to, f.from) * orientation(e.from, e.to, f.to) < 0 &&
+         orientation(f.from, f.to, e.from) * orientation(f.from, f.to, e.to) < 0;
+}
+
+}  // namespace
+
+bool overlaps_in_plane(const ImmersedDisc& disc, const PatchPoints& points, const Region& region) {
+  std::vector<RimEdge> rim = find_rim(disc, points, region);
+  std::sort(rim.begin(), rim.end(), [](const RimEdge& e, const RimEdge& f) { return e.left < f.left; });
+  const double far = far_share * region.diameter();
+  // A sweep from left to right: only edges whose columns overlap can cross.
+  std::vector<const RimEdge*> open;
+  for (const RimEdge& edge : rim) {
+    std::erase_if(open, [&](const RimEdge* other) { return other->right < edge.left; });
+    for (const RimEdge* other : open)
+      if (std::abs(other->image - edge.image) > far && cross_properly(edge, *other)) return true;
+    open.push_back(&edge);
+  }
+  return false;
+}
+
+}  // namespace applique

@@ -1,0 +1,100 @@
+#include "applique/patch/depth.h"
+
+#include <algorithm>
+#include <array>
+#include <optional>
+
+#include <Eigen/SparseCholesky>
+
+#include "applique/base/types.h"
+
+namespace applique {
+namespace {
+
+/// The share of the segment a -> b at which it passes the triangle, or nothing.
+std::optional<double> passage(Vec2 a, Vec2 b, const std::array<Vec2, 3>& triangle) {
+  // Clip the segment's parameters by the three sides (Cyrus and Beck).
+  double from = 0, to = 1;
+  for (int k = 0; k < 3; ++k) {
+    const Vec2 corner = triangle[k], side = triangle[(k + 1) % 3] - corner;
+    const double at_a = cross(side, a - corner), at_b = cross(side, b - corner);
+    if (at_a < 0 && at_b < 0) return std::nullopt;
+    if (at_a < 0) from = std::max(from, at_a / (at_a - at_b));
+    if (at_b < 0) to = std::min(to, at_a / (at_a - at_b));
+  }
+  return from <= to ? std::optional(0.5 * (from + to)) : std::nullopt;
+}
+
+/// What is fixed: per face the values of depth and order, or none.
+using Fixed = IdVector<PatchFaceId, std::optional<Eigen::RowVector2d>>;
+
+Fixed fix_faces(const Patch& patch, const IdVector<PatchVertexId, Vec2>& image,
+                std::span<const DepthFeature> features, std::span<const FeaturePair> tree) {
+  const auto value = [&](std::uint32_t k) { return Eigen::RowVector2d(features[k].depth, k); };
+  IdVector<PatchFaceId, Eigen::RowVector2d> sum(patch.faces.size(), Eigen::RowVector2d::Zero());
+  IdVector<PatchFaceId, int> count(patch.faces.size(), 0);
+  const auto add = [&](PatchFaceId q, const Eigen::RowVector2d& fixed) {
+    sum[q] += fixed;
+    ++count[q];
+  };
+  for (const auto& [i, j] : tree) {
+    const Vec2 a = features[i].image, b = features[j].image;
+    for (PatchFaceId q : ids<PatchFaceId>(patch.faces.size())) {
+      const auto& v = patch.faces[q].vertices;
+      if (const auto t = passage(a, b, {image[v[0]], image[v[1]], image[v[2]]}))
+        add(q, (1 - *t) * value(i) + *t * value(j));
+    }
+  }
+  for (const DepthFeature& feature : features) count[feature.face] = 0;
+  for (std::uint32_t k = 0; k < features.size(); ++k) {
+    if (count[features[k].face] == 0) sum[features[k].face].setZero();
+    add(features[k].face, value(k));
+  }
+  Fixed fixed(patch.faces.size());
+  for (PatchFaceId q : ids<PatchFaceId>(patch.faces.size()))
+    if (count[q] > 0) fixed[q] = sum[q] / count[q];
+  return fixed;
+}
+
+}  // namespace
+
+FaceDepths spread_depths(const Patch& patch, const IdVector<PatchVertexId, Vec2>& image,
+                         std::span<const DepthFeature> features, std::span<const FeaturePair> tree) {
+  const Fixed fixed = fix_faces(patch, image, features, tree);
+  IdVector<PatchFaceId, int> row(patch.faces.size(), -1);
+  int rows = 0;
+  for (PatchFaceId q : ids<PatchFaceId>(patch.faces.size()))
+    if (!fixed[q]) row[q] = rows++;
+
+  std::vector<Eigen::Triplet<double>> entries;
+  Eigen::MatrixX2d right = Eigen::MatrixX2d::Zero(rows, 2);
+  for (PatchFaceId q : ids<PatchFaceId>(patch.faces.size())) {
+    if (row[q] < 0) continue;
+    for (const PatchFaceId across : patch.faces[q].neighbours) {
+      if (!across.valid()) continue;
+      entries.emplace_back(row[q], row[q], 1);
+      if (row[across] >= 0)
+        entries.emplace_back(row[q], row[across], -1);
+      else
+        right.row(row[q]) += *fixed[across];
+    }
+  }
+  Eigen::MatrixX2d solved(rows, 2);
+  if (rows > 0) {
+    Eigen::SparseMatrix<double> laplacian(rows, rows);
+    laplacian.setFromTriplets(entries.begin(), entries.end());
+    solved = Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>>(laplacian).solve(right);
+  }
+  // Equal depths are to be equal to the bit, so that `order` decides.
+  const bool level = std::all_of(features.begin(), features.end(),
+                                 [&](const DepthFeature& f) { return f.depth == features[0].depth; });
+  FaceDepths depths;
+  for (PatchFaceId q : ids<PatchFaceId>(patch.faces.size())) {
+    const Eigen::RowVector2d value = fixed[q] ? *fixed[q] : Eigen::RowVector2d(solved.row(row[q]));
+    depths.depth.push_back(level ? features[0].depth : value[0]);
+    depths.order.push_back(value[1]);
+  }
+  return depths;
+}
+
+}  // namespace applique

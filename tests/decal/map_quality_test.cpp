@@ -1,0 +1,52 @@
+#include "applique/quality/map_quality.h"
+
+#include <array>
+
+#include <gtest/gtest.h>
+
+#include "applique/image/image.h"
+
+#include "support/shapes.h"
+
+namespace applique {
+namespace {
+
+/// Two groups of two features each, far away and equally far: the first rests, the second moves by `shift`.
+Warp resting_and_moving(Vec2 shift) {
+  Warp warp;
+  warp.steps = 1;
+  warp.features = 4;
+  warp.groups = 2;
+  warp.group = {0, 0, 1, 1};
+  warp.pairs = {{0, 1}, {2, 3}};
+  for (const double t : {0.0, 0.5, 1.0}) {
+    const std::array<Vec2, 4> at = {Vec2(-1000, 0), Vec2(1000, 0), Vec2(0, -1000) + t * shift,
+                                    Vec2(0, 1000) + t * shift};
+    warp.position.insert(warp.position.end(), at.begin(), at.end());
+    warp.lambda.insert(warp.lambda.end(), {0, 0});
+    warp.offset.insert(warp.offset.end(), {0, shift});
+  }
+  return warp;
+}
+
+TEST(MapQuality, AWarpMayTurnOverByItsInfluenceAlone) {
+  const ImageFrame frame{512, 512};
+  const Region region = Region::from_contour({{0, 0}, {512, 0}, {512, 512}, {0, 512}}, frame).value();
+  const SurfaceMesh surface = shapes::plane(1, 1, 1, 1).weld();
+  Patch patch;
+  for (const VertexId v : surface.faces[FaceId(0)]) patch.vertices.push_back(v);
+  patch.faces.push_back({FaceId(0), {PatchVertexId(0), PatchVertexId(1), PatchVertexId(2)}, {}});
+  const IdVector<PatchVertexId, Vec2> plane(std::vector<Vec2>{{0, 0}, {1, 0}, {0, 1}});
+  const IdVector<PatchVertexId, Vec2> turned(std::vector<Vec2>{{0, 0}, {-1, 0}, {0, 1}});
+  const IdVector<PatchFaceId, char> textured(1, 1);
+  const auto flips = [&](const Warp& warp, const std::vector<double>& influence) {
+    return measure_quality(surface, patch, plane, turned, textured, warp, region, influence).flipped_image;
+  };
+  const Warp warp = resting_and_moving({-2, 0});
+  EXPECT_EQ(flips(warp, {1, 0, 0, 1, 1, 0}), 1U);  // The second corner is carried past the first.
+  EXPECT_EQ(flips(warp, {1, 0, 1, 0, 1, 0}), 0U);  // Everything rests: only interpolation turns over.
+  EXPECT_EQ(flips(warp, {0, 1, 0, 1, 0, 1}), 0U);  // Everything moves.
+}
+
+}  // namespace
+}  // namespace applique

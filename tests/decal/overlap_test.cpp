@@ -1,0 +1,184 @@
+#include <algorithm>
+#include <map>
+#include <numbers>
+
+#include <gtest/gtest.h>
+
+#include "applique/decal.h"
+
+#include "support/shapes.h"
+
+namespace applique {
+namespace {
+
+constexpr double pi = std::numbers::pi;
+
+struct Pin {
+  Pixel image;
+  Vec3 position;
+  double depth = 0;
+};
+
+DecalInput decal(const SurfaceMesh& surface, Region region, const std::vector<Pin>& pins) {
+  DecalInput input{"test", std::move(region), {}, {}};
+  for (const Pin& pin : pins)
+    input.features.push_back({pin.image, shapes::nearest(surface, pin.position), pin.depth});
+  return input;
+}
+
+void expect_exact_and_unfolded(const DecalMap& map) {
+  EXPECT_EQ(map.quality.flipped_plane, 0U);
+  EXPECT_EQ(map.quality.flipped_image, 0U);
+  for (double residual : map.quality.feature_residual) EXPECT_LT(residual, 1e-8);
+}
+
+/// The textured faces that lie over one surface face, for every surface face that has several.
+std::vector<std::vector<PatchFaceId>> stacks(const DecalMap& map) {
+  std::map<FaceId, std::vector<PatchFaceId>> over;
+  for (PatchFaceId q : ids<PatchFaceId>(map.patch.faces.size()))
+    if (map.textured[q]) over[map.patch.faces[q].mesh_face].push_back(q);
+  std::vector<std::vector<PatchFaceId>> result;
+  for (auto& [face, stack] : over)
+    if (stack.size() > 1) result.push_back(std::move(stack));
+  return result;
+}
+
+Vec2 image_middle(const DecalMap& map, PatchFaceId q) {
+  const auto& v = map.patch.faces[q].vertices;
+  return (map.image[v[0]] + map.image[v[1]] + map.image[v[2]]) / 3.0;
+}
+
+/// A straight ribbon of 1200 x 100 pixels.
+constexpr ImageFrame ribbon_frame{1200, 100};
+Region ribbon() {
+  return *Region::from_contour({{0, 0}, {1200, 0}, {1200, 100}, {0, 100}}, ribbon_frame);
+}
+
+/// A belt of one and a half times the way round, its middle pinned every 45 degrees; later is on top if
+/// `rising`.
+std::vector<Pin> belt(bool rising) {
+  std::vector<Pin> pins;
+  for (int k = 0; k <= 12; ++k) {
+    const double angle = 2 * pi * (k + 0.25) / 8;
+    pins.push_back({{50 + 1100.0 / 12 * k, 50},
+                    {std::cos(angle), std::sin(angle), 2.02},
+                    rising ? double(k) : double(-k)});
+  }
+  return pins;
+}
+
+TEST(Overlap, ABeltGoesRoundACylinderOneAndAHalfTimes) {
+  const SurfaceMesh surface = shapes::cylinder(96, 40, 1, 4).weld();
+  for (const bool rising : {true, false}) {
+    SolveOptions options;
+    options.overlap = Overlap::allow;
+    const auto map = solve_decal(surface, decal(surface, ribbon(), belt(rising)), options);
+    ASSERT_TRUE(map.has_value()) << map.error().message;
+    expect_exact_and_unfolded(*map);
+    EXPECT_EQ(map->status, Coverage::covered);
+    EXPECT_GT(map->quality.coverage, 0.9999);
+    EXPECT_LT(map->quality.coverage, 1.0001);
+    EXPECT_EQ(map->sheets, 2U);
+    EXPECT_EQ(map->groups, 1U);                 // in the plane nothing overlaps
+    EXPECT_LT(map->quality.l2_stretch, 1.001);  // each sheet is unrolled
+    const auto overlaps = stacks(*map);
+    EXPECT_GT(overlaps.size(), 300U);
+    for (const auto& stack : overlaps) {
+      ASSERT_EQ(stack.size(), 2U);
+      // A turn apart along the ribbon, and the one further along is on top, or below.
+      const double x0 = image_middle(*map, stack[0]).real(), x1 = image_middle(*map, stack[1]).real();
+      EXPECT_NEAR(std::abs(x1 - x0), 2.0 / 1200 * 1100 / 12 * 8, 0.02);
+      EXPECT_EQ(map->depth[stack[0]] < map->depth[stack[1]], (x0 < x1) == rising);
+    }
+  }
+}
+
+TEST(Overlap, StopsAtItselfUnlessAllowed) {
+  const SurfaceMesh surface = shapes::cylinder(96, 40, 1, 4).weld();
+  // Pinned on its first third only, the belt grows round and meets itself.
+  std::vector<Pin> pins = belt(true);
+  pins.resize(5);
+  SolveOptions options;
+  const auto stopped = solve_decal(surface, decal(surface, ribbon(), pins), options);
+  ASSERT_TRUE(stopped.has_value()) << stopped.error().message;
+  expect_exact_and_unfolded(*stopped);
+  EXPECT_EQ(stopped->status, Coverage::clipped_by_cover);
+  EXPECT_EQ(stopped->sheets, 1U);
+  EXPECT_NEAR(stopped->quality.coverage, 2 * pi / (1200 / 1100.0 * 12 * pi / 4), 0.03);
+  EXPECT_EQ(std::count_if(stopped->warnings.begin(), stopped->warnings.end(),
+                          [](const Warning& w) {
+                            return w.code == "clipped_by_cover" &&
+                                   w.message.find("overlap") != std::string::npos;
+                          }),
+            1);
+  options.overlap = Overlap::allow;
+  const auto allowed = solve_decal(surface, decal(surface, ribbon(), pins), options);
+  ASSERT_TRUE(allowed.has_value()) << allowed.error().message;
+  expect_exact_and_unfolded(*allowed);
+  EXPECT_EQ(allowed->status, Coverage::covered);
+  EXPECT_EQ(allowed->sheets, 2U);
+  EXPECT_GT(allowed->quality.coverage, 0.9999);
+  EXPECT_LT(allowed->quality.l2_stretch, 1.001);
+}
+
+/// A loop on the unit sphere that crosses itself near (0, 0, 1): the ends of the parameter [0, 1] stick out.
+Vec3 loop(double t) {
+  const double s = (2 * t - 1) * 1.25 * pi;  // from -225 to 225 degrees round a circle of radius 0.55
+  const double along = 0.55 * std::sin(s), across = 0.55 * (1 + std::cos(s)) - 0.3;
+  return Vec3(along, across, std::sqrt(1 - along * along - across * across));
+}
+
+TEST(Overlap, ARibbonCrossesItselfOnASphere) {
+  const SurfaceMesh surface = shapes::sphere(6, 1).weld();
+  std::vector<Pin> pins;
+  for (int k = 0; k <= 11; ++k) pins.push_back({{50 + 100.0 * k, 50}, loop(k / 11.0), k / 11.0});
+  const auto map = solve_decal(surface, decal(surface, ribbon(), pins));
+  ASSERT_TRUE(map.has_value()) << map.error().message;
+  expect_exact_and_unfolded(*map);
+  EXPECT_EQ(map->status, Coverage::covered);
+  EXPECT_GT(map->quality.coverage, 0.999);
+  EXPECT_LT(map->quality.coverage, 1.001);
+  EXPECT_EQ(map->sheets, 2U);
+  EXPECT_GT(map->groups, 1U);
+  EXPECT_LT(map->quality.l2_stretch, 1.3);
+  const auto overlaps = stacks(*map);
+  EXPECT_GT(overlaps.size(), 20U);
+  for (const auto& stack : overlaps) {
+    const double x0 = image_middle(*map, stack[0]).real(), x1 = image_middle(*map, stack[1]).real();
+    EXPECT_GT(std::abs(x1 - x0), 0.3);
+    EXPECT_EQ(map->depth[stack[0]] < map->depth[stack[1]], x0 < x1);
+  }
+}
+
+constexpr ImageFrame u_frame{600, 600};
+
+/// A U whose arms are 100 px wide.
+Region u_shape() {
+  return *Region::from_contour(
+      {{100, 50}, {200, 50}, {200, 450}, {400, 450}, {400, 50}, {500, 50}, {500, 550}, {100, 550}}, u_frame);
+}
+
+/// Its arms bent inwards until they cross; 1 scene unit is 100 px, y up.
+std::vector<Pin> crossed_arms() {
+  const auto at = [](double x, double y) { return Vec3(x / 100, (600 - y) / 100, 0); };
+  return {{{150, 500}, at(150, 500), 0}, {{450, 500}, at(450, 500), 0}, {{150, 380}, at(170, 380), 0},
+          {{450, 380}, at(430, 380), 0}, {{150, 240}, at(250, 260), 1}, {{450, 240}, at(350, 260), 2},
+          {{150, 100}, at(360, 170), 1}, {{450, 100}, at(240, 170), 2}};
+}
+
+TEST(Overlap, TheArmsOfAUCrossWithoutAFoldAtEveryRefinement) {
+  for (const int cells : {24, 48, 96, 144}) {
+    const SurfaceMesh surface = shapes::plane(cells, cells, 6, 6, 0.2).weld();
+    const auto map = solve_decal(surface, decal(surface, u_shape(), crossed_arms()));
+    ASSERT_TRUE(map.has_value()) << map.error().message;
+    expect_exact_and_unfolded(*map);
+    EXPECT_GT(map->quality.coverage, 0.999);
+    EXPECT_LT(map->quality.coverage, 1.001);
+    EXPECT_EQ(map->sheets, 2U);
+    EXPECT_GT(map->groups, 1U);
+    RecordProperty("flips_" + std::to_string(cells), static_cast<int>(map->quality.flipped_image));
+  }
+}
+
+}  // namespace
+}  // namespace applique
