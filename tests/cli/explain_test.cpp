@@ -40,7 +40,7 @@ class ExplainTest : public testing::Test {
   }
 
   /// The share of the picture's pixels whose colour is within `tolerance` of this one in each channel.
-  static double share_of(const Image& picture, const draw::Rgba& colour, double tolerance = 0.02) {
+  static double share_of(const Image& picture, const draw::Rgba& colour, double tolerance = 0.05) {
     std::size_t count = 0;
     const std::array<double, 3> wanted = {colour.r, colour.g, colour.b};
     for (int y = 0; y < picture.height; ++y)
@@ -55,13 +55,13 @@ class ExplainTest : public testing::Test {
 
   Image explain(const std::string& arguments) {
     const CommandResult result =
-        folder_.run("explain job.json -o picture.png --size 400x200 --stage " + arguments);
+        folder_.run("explain job.json -o picture.png --size 800x400 --stage " + arguments);
     EXPECT_EQ(result.status, 0) << result.err;
     auto picture = read_image(folder_ / "picture.png");
     EXPECT_TRUE(picture);
     if (!picture) return make_image(1, 1, {0, 0, 0, 0});
-    EXPECT_EQ(picture->width, 400);
-    EXPECT_EQ(picture->height, 200);
+    EXPECT_EQ(picture->width, 800);
+    EXPECT_EQ(picture->height, 400);
     EXPECT_GT(share_of(*picture, palette::white), 0.02) << "the background";
     EXPECT_GT(share_of(*picture, palette::ink, 0.05), 0.001) << "the features";
     return *std::move(picture);
