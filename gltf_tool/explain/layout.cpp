@@ -47,7 +47,9 @@ std::vector<Box> lay_out(PictureSize size, std::size_t count, double aspect) {
   const auto [cell, margin] = grid_of(size, best_columns, (count + best_columns - 1) / best_columns);
   std::vector<Box> boxes;
   for (std::size_t i = 0; i < count; ++i) {
-    const auto column = static_cast<double>(i % best_columns), row = static_cast<double>(i / best_columns);
+    const auto column = static_cast<double>(i % best_columns);
+    const std::size_t full_rows = i / best_columns;
+    const auto row = static_cast<double>(full_rows);
     boxes.push_back(
         {{margin + column * (cell.real() + margin), margin + row * (cell.imag() + margin)}, cell});
   }
