@@ -14,6 +14,8 @@
 namespace applique {
 namespace {
 
+constexpr double transferred = 0.6;  // share of the work, for the progress bar
+
 /// A target on its way: the texture, and what each of its decals does to it.
 struct TargetWork {
   BakeTarget target;
@@ -113,9 +115,8 @@ Result<void> transfer_all(SolvedJob& job, std::vector<TargetWork>& works, GpuBak
   }
   for (std::size_t w = 0; w < works.size(); ++w) {
     TargetWork& work = works[w];
-    if (on_stage)
-      on_stage("baking into " + work.report.material,
-               static_cast<double>(w) / static_cast<double>(works.size()));
+    on_stage("baking into " + work.report.material,
+             transferred * static_cast<double>(w) / static_cast<double>(works.size()));
     for (std::size_t i = 0; i < work.transfers.size(); ++i) {
       const std::size_t d = work.target.decals[i];
       SolvedDecal& decal = job.decals[d];
@@ -182,11 +183,16 @@ Result<BakedJob> bake_job(SolvedJob& job, GpuBaker& baker, const StageCallback& 
   BakedJob baked;
   baked.document = job.model.document;
   Stopwatch watch;
+  const auto show = [&](const std::string& stage, double done) {
+    if (on_stage) on_stage(stage, done);
+  };
+  show("preparing the textures", 0);
   APPLIQUE_TRY(auto targets, plan_bake(job, baked.document));
   APPLIQUE_TRY(auto works, prepare(job, baked.document, std::move(targets)));
   baked.times.add("load_textures", watch.lap());
-  APPLIQUE_CHECK(transfer_all(job, works, baker, baked, on_stage));
+  APPLIQUE_CHECK(transfer_all(job, works, baker, baked, show));
   baked.times.add("transfer", watch.lap());
+  show("encoding the textures", transferred);
   APPLIQUE_CHECK(store_textures(works, baked.document));
   baked.times.add("encode_textures", watch.lap());
   APPLIQUE_CHECK(add_overlays(job, baked.document));

@@ -23,6 +23,7 @@ layout(std430, set = 0, binding = 6) buffer Outcome {
   uint padding;
   vec2 samples[];
 };
+layout(std430, set = 0, binding = 10) buffer Sums { vec4 sums[]; };  // Of the pieces so far, where there are several.
 layout(std430, set = 0, binding = 8) readonly buffer Points { vec2 points[]; };  // Of the faces' grids.
 // Pairs as (i, j), then by stage the features' (position, group), then by stage the pairs' (lambda, offset).
 #ifdef LARGE_WARP
@@ -137,7 +138,9 @@ vec4 sample_decal(ivec2 pixel, vec2 rest, vec2 axis, float level, uint probes) {
       ivec2 q = corner + ivec2(k & 1, k >> 1);
       vec2 w = mix(1.0 - fraction, fraction, equal(ivec2(k & 1, k >> 1), ivec2(1)));
       if (all(greaterThanEqual(q, ivec2(0))) && all(lessThan(q, ivec2(stored.yz)))) {
-        uvec2 packed = decal[stored.x + uint(q.y) * stored.y + uint(q.x)];
+        uint at = stored.x + uint(q.y) * stored.y + uint(q.x) - constants.piece_first;
+        if (at >= constants.piece_size) continue;
+        uvec2 packed = decal[at];
         bilinear += w.x * w.y * vec4(unpackHalf2x16(packed.x), unpackHalf2x16(packed.y));
       }
     }
@@ -167,6 +170,7 @@ void main() {
   ivec2 work = texel - constants.work_origin;
   if (any(lessThan(work, ivec2(0))) || any(greaterThanEqual(work, constants.work_size))) return;
 
+  bool last_piece = (constants.piece_flags & piece_goes_on) == 0u;
   ivec2 seed = texel;
   uint owner = owners[texel.y * constants.region_size.x + texel.x];
   if (owner == 0u) {
@@ -186,12 +190,12 @@ void main() {
     }
     uint key = owners[seed.y * constants.region_size.x + seed.x] & key_mask;
     if (key == 0u) return;
-    atomicAdd(gutter, 1u);
+    if (last_piece) atomicAdd(gutter, 1u);
     owner = key;
   } else {
     if ((owner & key_mask) == 0u) return;
-    atomicAdd(covered, 1u);
-    if ((owner & foreign_bit) != 0u) atomicAdd(shared_texels, 1u);
+    if (last_piece) atomicAdd(covered, 1u);
+    if (last_piece && (owner & foreign_bit) != 0u) atomicAdd(shared_texels, 1u);
   }
 
   FaceMap face = faces[(owner & key_mask) - 1u];
@@ -213,6 +217,11 @@ void main() {
   if (constants.keep_samples != 0u && seed == texel) samples[index] = vec2(face.pixel) + place;
 
   vec4 source = constants.opacity * sample_decal(face.pixel, place, face.axis, face.level, face.probes);
+  if ((constants.piece_flags & piece_follows) != 0u) source += sums[index];
+  if (!last_piece) {
+    sums[index] = source;
+    return;
+  }
   if (source.a <= 0.0) return;
   uvec2 stored = texels[index];
   vec4 below = vec4(unpackUnorm2x16(stored.x), unpackUnorm2x16(stored.y));

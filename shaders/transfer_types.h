@@ -32,6 +32,9 @@ APPLIQUE_CONST uint face_warped = 1u;
 APPLIQUE_CONST uint face_clamped = 2u;  // Too thin to extend: its gutter repeats its nearest texel.
 APPLIQUE_CONST uint face_cells = 4u;    // Times the cells along a side of a refined face: `value` is a place in its grid.
 
+APPLIQUE_CONST uint piece_follows = 1u;  // Another piece precedes this one.
+APPLIQUE_CONST uint piece_goes_on = 2u;  // Another piece comes after it: nothing is blended yet.
+
 APPLIQUE_CONST uint no_texel = 0x7fffffffu;  // Nearest pass: no owned texel in reach along the row.
 
 // One triangle over one block. A texel (x, y) of the block is inside where every a * x + b * y + c >= 0.
@@ -75,12 +78,15 @@ struct TransferConstants {
   uint pairs;
   vec2 half_size;  // Of the image, pixels.
   float pixels_per_unit;
+  uint piece_first;  // The decal's texels that are bound: what they give is added to what earlier pieces gave.
+  uint piece_size;
+  uint piece_flags;
 };
 
 #ifdef __cplusplus
 static_assert(sizeof(RasterJob) == 48 && offsetof(RasterJob, key) == 36);
 static_assert(sizeof(FaceMap) == 64 && offsetof(FaceMap, axis) == 40 && offsetof(FaceMap, level) == 48);
-static_assert(sizeof(TransferConstants) == 76 && offsetof(TransferConstants, half_size) == 64);
+static_assert(sizeof(TransferConstants) == 88 && offsetof(TransferConstants, half_size) == 64);
 }  // namespace applique::shader
 #endif
 #undef APPLIQUE_CONST

@@ -27,6 +27,7 @@ constexpr std::uint32_t most_sheets = 16;
 constexpr double most_patch_area = 4;         // of a patch that may cover more, times the region's
 constexpr double linear_tolerance_px = 0.02;  // §5.1 of the design
 constexpr double least_coverage = 0.01;       // below it the result is of no use
+constexpr double few_changes = 0.03;          // of a patch's faces
 #ifdef APPLIQUE_CHECK_INVARIANTS
 constexpr bool always_check_patch = true;
 #else
@@ -162,8 +163,7 @@ class Solver {
       StageTimer stage(map_.times.embed);
       // The last embedding, undone to the surface's scale, is where an isometric one may start from.
       std::vector<Vec2> start;
-      if (rung_ == EmbeddingRung::descended)
-        for (const PatchPoint& point : points_) start.push_back(point.plane / scale_);
+      for (const PatchPoint& point : points_) start.push_back(point.plane / scale_);
       Embedding embedding = embed_disc(measure_disc(disc), options, start);
       rung_ = embedding.rung;
       plane = std::move(embedding.plane);
@@ -290,7 +290,11 @@ class Solver {
       const std::size_t peeled = energy == Energy::conformal && !padded ? growth.peel(points_, inside) : 0;
       const std::size_t added =
           growth.grow(points_, inside, scale_, {}) + growth.fill_pockets(points_, inside, scale_);
-      if (added == 0 && peeled == 0) {
+      // What is still to come of a patch that hardly changes, the margin brings as well; but where it may go
+      // on over itself, what stops it shows at the very end.
+      const bool exactly = padded || options_.overlap == Overlap::allow;
+      const double settled = exactly ? 0 : few_changes * static_cast<double>(disc.faces().size());
+      if (static_cast<double>(added + peeled) <= settled) {
         // Thin patches mislead: what they say of the features' order counts once the patch is grown.
         if (mirrored_)
           return fail(
@@ -302,10 +306,9 @@ class Solver {
                   input_.name, feature_range()));
         if (energy != options_.energy) {
           energy = options_.energy;
-          continue;
-        }
-        if (padded) break;
-        if (may_cover_more(disc, growth)) {
+        } else if (padded) {
+          break;
+        } else if (may_cover_more(disc, growth)) {
           growth.set_cover_limit(growth.cover_limit() + 1);
           if (growth.grow(points_, inside, scale_, {}) > 0) energy = Energy::conformal;
         } else {

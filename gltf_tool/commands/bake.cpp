@@ -47,7 +47,8 @@ CLI::App* add_bake_command(CLI::App& app, BakeArguments& arguments) {
       ->required()
       ->check(model_extension);
   command->add_option("--report", arguments.report, "Write a report (JSON)");
-  command->add_option("--preview", arguments.preview, "Write a picture that frames the first decal (PNG)");
+  command->add_option("--preview", arguments.preview, "Write a picture that frames the first decal (PNG)")
+      ->check(picture_extension);
   command->add_option("--device", arguments.device, "The Vulkan device, by index or by a part of its name");
   return command;
 }
@@ -79,13 +80,20 @@ Result<void> run_bake(const BakeArguments& arguments, const CommonArguments& com
 
   // The device is made while the geometry is solved.
   auto baker_ready = std::async(std::launch::async, [&] { return create_baker(arguments.device); });
+  // One that was named may not exist, which is told before the work.
+  std::unique_ptr<GpuBaker> baker;
+  if (!arguments.device.empty()) {
+    APPLIQUE_TRY(baker, baker_ready.get());
+  }
   std::optional<Progress> progress(std::in_place, !common.quiet);
   APPLIQUE_TRY(SolvedJob solved, solve_job(job, show_stages(*progress, 0, solve_share)));
   ReportInput input;
   input.command = "bake";
   input.times = solved.times;
   Stopwatch watch;
-  APPLIQUE_TRY(const std::unique_ptr<GpuBaker> baker, baker_ready.get());
+  if (!baker) {
+    APPLIQUE_TRY(baker, baker_ready.get());
+  }
   input.times.add("wait_for_device", watch.lap());
   spdlog::debug("Vulkan device: {}", baker->device.name());
 

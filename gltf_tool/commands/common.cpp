@@ -91,4 +91,21 @@ const CLI::Validator model_extension(
     },
     "");
 
+const CLI::Validator picture_extension(
+    [](std::string& path) {
+      if (std::filesystem::path(path).extension() == ".png") return std::string();
+      return fmt::format("{}: pictures are written as .png", path);
+    },
+    "");
+
+CLI::Validator number_within(double least, double most) {
+  return CLI::Validator(
+      [least, most](std::string& text) {
+        double value = 0;
+        if (CLI::detail::lexical_cast(text, value) && value >= least && value <= most) return std::string();
+        return fmt::format("{}: expected a number from {} to {}", text, least, most);
+      },
+      "");
+}
+
 }  // namespace applique

@@ -49,4 +49,10 @@ extern const CLI::Validator picture_size;
 /// For options that name a model to write: .glb or .gltf.
 extern const CLI::Validator model_extension;
 
+/// For options that name a picture to write: .png.
+extern const CLI::Validator picture_extension;
+
+/// For options that are numbers: finite, `least` to `most`.
+CLI::Validator number_within(double least, double most);
+
 }  // namespace applique

@@ -25,18 +25,22 @@ CLI::App* add_render_command(CLI::App& app, RenderArguments& arguments) {
                      "  applique render model.glb -o side.png --azimuth 60 --elevation 15 --zoom 2\n"
                      "  applique render out.glb -o decal.png --job job.json --decal tiger");
   command->add_option("MODEL", arguments.model, "The model, .glb or .gltf")->required();
-  command->add_option("-o,--output", arguments.output, "The picture to write (PNG)")->required();
+  command->add_option("-o,--output", arguments.output, "The picture to write (PNG)")
+      ->required()
+      ->check(picture_extension);
   command->add_option("--size", arguments.size, "The picture's size, WIDTHxHEIGHT in pixels")
       ->capture_default_str()
       ->check(picture_size);
   auto* azimuth =
       command->add_option("--azimuth", arguments.azimuth, "Degrees to the right of the front (+z)")
-          ->capture_default_str();
+          ->capture_default_str()
+          ->check(number_within(-360, 360));
   auto* elevation = command->add_option("--elevation", arguments.elevation, "Degrees above the horizon")
-                        ->capture_default_str();
+                        ->capture_default_str()
+                        ->check(number_within(-90, 90));
   auto* zoom = command->add_option("--zoom", arguments.zoom, "1 shows the whole model, more comes closer")
                    ->capture_default_str()
-                   ->check(CLI::PositiveNumber);
+                   ->check(number_within(0.01, 1000));
   auto* job =
       command->add_option("--job", arguments.job, "Look straight at a decal of this job, the first one")
           ->excludes(azimuth)

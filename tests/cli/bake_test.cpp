@@ -296,7 +296,8 @@ TEST_F(BakeTest, ProgressIsForTerminalsOnly) {
   const CommandResult result = bake(job_at(-2, 0), "-o out.glb --verbose");
   EXPECT_EQ(result.status, 0);
   EXPECT_EQ(result.err.find('\r'), std::string::npos);
-  EXPECT_NE(result.err.find("solving 'crest'"), std::string::npos) << result.err;
+  for (const char* stage : {"solving 'crest'", "preparing the textures", "encoding the textures"})
+    EXPECT_NE(result.err.find(stage), std::string::npos) << stage << "\nin: " << result.err;
 }
 
 TEST_F(BakeTest, CheckReportsTheSameGeometryAndDumpsTheRegion) {

@@ -165,21 +165,37 @@ TEST_F(ErrorsTest, OutputThatCannotBeWritten) {
 TEST_F(ErrorsTest, OutputsThatWouldDestroyFiles) {
   const std::string image = folder_.read("image.png");
   expect_failure(good_job(), 4, {"'out.glb' would be written twice"},
-                 "bake job.json -o out.glb --preview out.glb");
+                 "bake job.json -o out.glb --report out.glb");
   expect_failure(good_job(), 4, {"'job.json' is an input"}, "bake job.json -o out.glb --report job.json");
   expect_failure(good_job(), 4, {"'image.png' is an input"}, "bake job.json -o out.glb --preview image.png");
   expect_failure(good_job(), 4, {"'r.json' would be written twice"},
                  "check job.json --report r.json --dump-region r.json");
-  expect_failure(good_job(), 4, {"'model.glb' is an input"}, "render model.glb -o model.glb");
+  expect_failure(good_job(), 4, {"'image.png' is an input"}, "render image.png -o image.png");
   EXPECT_EQ(folder_.read("image.png"), image);
 }
 
 TEST_F(ErrorsTest, OutputOfNoKnownKind) {
   expect_failure(good_job(), 1, {"out.obj", ".glb", ".gltf"}, "bake job.json -o out.obj");
+  expect_failure(good_job(), 1, {"--preview", "out.jpg", ".png"},
+                 "bake job.json -o out.glb --preview out.jpg");
+  expect_failure(good_job(), 1, {"--output", "model.glb", ".png"}, "render model.glb -o model.glb");
+}
+
+TEST_F(ErrorsTest, ViewsThatAreNone) {
+  for (const char* option : {"--zoom nan", "--zoom 0", "--zoom 1e300", "--azimuth nan", "--azimuth inf",
+                             "--azimuth 1e9", "--elevation nan", "--elevation 91"}) {
+    const std::string name = std::string(option).substr(0, std::string(option).find(' '));
+    expect_failure(good_job(), 1, {name, "expected a number from"},
+                   std::string("render model.glb -o picture.png ") + option);
+  }
 }
 
 TEST_F(ErrorsTest, DeviceThatIsNotThere) {
   expect_failure(good_job(), 5, {"nonsense"}, "bake job.json -o out.glb --device nonsense");
+  // Told before the work: the same job that could not be solved.
+  json job = good_job();
+  job["decals"][0]["features"][1]["position"] = {2, 0, 0};
+  expect_failure(job, 5, {"nonsense"}, "bake job.json -o out.glb --device nonsense");
 }
 
 TEST(Usage, WrongUsageIsOne) {

@@ -103,6 +103,26 @@ TEST_F(GpuTransferTest, AgreesWhereTheWarpRunsAtEachTexel) {
   }
 }
 
+/// The image's 600 x 600 pixels take 3.8 MB: four pieces and, where the tiles are cut as well, 59.
+TEST_F(GpuTransferTest, GoesThroughALargeImageInPieces) {
+  for (const std::uint64_t bytes : {1U << 20, 1U << 16}) {
+    GpuTransferOptions gpu_options;
+    gpu_options.max_buffer_bytes = bytes;
+    GpuTransfer gpu = GpuTransfer::create(device(), gpu_options).value();
+    SyntheticOptions options;
+    options.image = 600;
+    options.texture = 200;
+    for (unsigned seed = 1; seed <= 3; ++seed) {
+      options.sheets = static_cast<int>(seed);
+      options.stacked = seed > 1;
+      SyntheticTransfer synthetic = synthetic_transfer(seed, options);
+      synthetic.transfer.blend = static_cast<BlendMode>(seed % 3);
+      SCOPED_TRACE(seed);
+      expect_agreement(compare(gpu, synthetic.transfer, noise_texture(seed, 200, 200)));
+    }
+  }
+}
+
 TEST_F(GpuTransferTest, RefinesCoarseFaces) {
   GpuTransfer gpu = GpuTransfer::create(device()).value();
   SyntheticOptions options;

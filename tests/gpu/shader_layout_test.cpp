@@ -28,8 +28,8 @@ TEST(ShaderLayout, TransferShadersMatch) {
   }
   EXPECT_EQ(cover.bindings, (Bindings{0, 2}));
   EXPECT_EQ(nearest.bindings, (Bindings{0, 1, 2}));
-  EXPECT_EQ(shade.bindings, (Bindings{0, 1, 2, 3, 4, 5, 6, 7, 8}));
-  EXPECT_EQ(shade_large.bindings, (Bindings{0, 1, 2, 3, 4, 5, 6, 7, 8, 9}));
+  EXPECT_EQ(shade.bindings, (Bindings{0, 1, 2, 3, 4, 5, 6, 7, 8, 10}));
+  EXPECT_EQ(shade_large.bindings, (Bindings{0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10}));
 }
 
 TEST(ShaderLayout, RenderShadersMatch) {

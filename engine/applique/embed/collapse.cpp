@@ -22,8 +22,7 @@ double collapse_time(const std::array<Vec2, 3>& a, const std::array<Vec2, 3>& b)
 
 }  // namespace
 
-double first_collapse(const DiscGeometry& disc, const std::vector<Vec2>& start,
-                      const std::vector<Vec2>& goal) {
+double first_collapse(const DiscGeometry& disc, std::span<const Vec2> start, std::span<const Vec2> goal) {
   double first = 2;
   for (const auto& f : disc.faces)
     first = std::min(

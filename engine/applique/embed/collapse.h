@@ -1,6 +1,6 @@
 #pragma once
 
-#include <vector>
+#include <span>
 
 #include "applique/embed/disc_geometry.h"
 
@@ -8,7 +8,6 @@ namespace applique {
 
 /// The first time in (0, 1] at which a triangle has no area while all vertices move linearly from `start`,
 /// which turns nothing over, to `goal`; 2 if none has.
-double first_collapse(const DiscGeometry& disc, const std::vector<Vec2>& start,
-                      const std::vector<Vec2>& goal);
+double first_collapse(const DiscGeometry& disc, std::span<const Vec2> start, std::span<const Vec2> goal);
 
 }  // namespace applique

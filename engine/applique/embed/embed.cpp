@@ -5,7 +5,6 @@
 
 #include "applique/embed/arap.h"
 #include "applique/embed/boundary_first.h"
-#include "applique/embed/collapse.h"
 #include "applique/embed/mean_value.h"
 #include "applique/embed/symmetric_dirichlet.h"
 
@@ -25,10 +24,12 @@ void scale_to_area(const DiscGeometry& disc, std::vector<Vec2>& plane) {
   for (Vec2& z : plane) z *= scale;
 }
 
-constexpr ArapOptions rough_arap{10, 1e-2};
+constexpr double rough_tolerance = 1e-3;
 
-Embedding descend(const DiscGeometry& disc, std::vector<Vec2> start) {
-  Embedding embedding{relax_symmetric_dirichlet(disc, std::move(start)), EmbeddingRung::descended, 0};
+Embedding descend(const DiscGeometry& disc, const EmbedOptions& options, const std::vector<Vec2>& start) {
+  SymmetricDirichletOptions descent;
+  if (options.rough) descent.tolerance = rough_tolerance;
+  Embedding embedding{relax_symmetric_dirichlet(disc, start, descent), EmbeddingRung::isometric, 0};
   embedding.flips = count_flips(disc, embedding.plane);
   return embedding;
 }
@@ -36,9 +37,8 @@ Embedding descend(const DiscGeometry& disc, std::vector<Vec2> start) {
 }  // namespace
 
 Embedding embed_disc(const DiscGeometry& disc, const EmbedOptions& options, const std::vector<Vec2>& start) {
-  if (options.energy == Energy::isometric && !options.rough && !start.empty() &&
-      count_flips(disc, start) == 0)
-    return descend(disc, start);
+  if (options.energy == Energy::isometric && !start.empty() && count_flips(disc, start) == 0)
+    return descend(disc, options, start);
   Embedding embedding{flatten_boundary_first(disc), EmbeddingRung::conformal, 0};
   if (!finite(embedding.plane) || (embedding.flips = count_flips(disc, embedding.plane)) > 0) {
     std::vector<Vec2> circle = embed_on_circle(disc);
@@ -48,16 +48,11 @@ Embedding embed_disc(const DiscGeometry& disc, const EmbedOptions& options, cons
   }
   scale_to_area(disc, embedding.plane);
   if (options.energy == Energy::conformal) return embedding;
-
-  std::vector<Vec2> relaxed = relax_arap(disc, embedding.plane, options.rough ? rough_arap : ArapOptions{});
-  if (finite(relaxed)) {
-    const std::size_t flips = count_flips(disc, relaxed);
-    if (flips == 0 || embedding.flips > 0 || options.rough)
-      return {std::move(relaxed), EmbeddingRung::isometric, flips};
-  }
-  // A blend that stops before ARAP's first fold starts the descent next to its barrier, which costs more
-  // steps than the flip-free map itself does.
-  return descend(disc, std::move(embedding.plane));
+  if (embedding.flips == 0) return descend(disc, options, embedding.plane);
+  std::vector<Vec2> relaxed = relax_arap(disc, embedding.plane);
+  if (!finite(relaxed)) return embedding;
+  const std::size_t flips = count_flips(disc, relaxed);
+  return {std::move(relaxed), EmbeddingRung::arap, flips};
 }
 
 }  // namespace applique

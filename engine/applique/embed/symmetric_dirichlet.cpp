@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <deque>
 #include <limits>
 
 #include <Eigen/SparseCholesky>
@@ -11,202 +12,224 @@
 namespace applique {
 namespace {
 
-using Eigen::Matrix2d;
-using Eigen::Vector2d;
-using Eigen::VectorXd;
+using Points = Eigen::VectorXcd;
 using SparseMatrix = Eigen::SparseMatrix<double>;
 
-/// A triangle at rest: its area and the gradients of its corners' hat functions.
+/// A triangle at rest: its area, and half the gradients of its corners' hat functions.
 struct RestTriangle {
   double area;
-  std::array<Vector2d, 3> gradient;
+  std::array<Vec2, 3> hat;
 };
 
 std::vector<RestTriangle> rest_triangles(const DiscGeometry& disc) {
   std::vector<RestTriangle> rest(disc.faces.size());
   for (std::size_t t = 0; t < rest.size(); ++t) {
     const auto corner = disc.flat(t);
-    const double twice_area = cross(corner[1] - corner[0], corner[2] - corner[0]);
-    rest[t].area = 0.5 * twice_area;
-    for (int k = 0; k < 3; ++k) {
-      const Vec2 opposite = corner[(k + 2) % 3] - corner[(k + 1) % 3];
-      rest[t].gradient[k] = Vector2d(-opposite.imag(), opposite.real()) / twice_area;
-    }
+    rest[t].area = 0.5 * cross(corner[1] - corner[0], corner[2] - corner[0]);
+    for (int k = 0; k < 3; ++k)
+      rest[t].hat[k] = Vec2(0, 0.25) * (corner[(k + 2) % 3] - corner[(k + 1) % 3]) / rest[t].area;
   }
   return rest;
 }
 
-Matrix2d deformation(const RestTriangle& rest, const std::array<int, 3>& f, const std::vector<Vec2>& plane) {
-  Matrix2d F = Matrix2d::Zero();
-  for (int k = 0; k < 3; ++k)
-    F += Vector2d(plane[f[k]].real(), plane[f[k]].imag()) * rest.gradient[k].transpose();
-  return F;
-}
+/// A triangle's map z -> a z + b conj(z): it stretches by |a| + |b| and |a| - |b|, and areas by the product.
+struct LinearMap {
+  Vec2 a = 0, b = 0;
 
-double energy(const DiscGeometry& disc, const std::vector<RestTriangle>& rest,
-              const std::vector<Vec2>& plane) {
+  LinearMap(const RestTriangle& rest, const std::array<int, 3>& f, const Points& plane) {
+    for (int k = 0; k < 3; ++k) {
+      a += plane[f[k]] * std::conj(rest.hat[k]);
+      b += plane[f[k]] * rest.hat[k];
+    }
+  }
+};
+
+/// The energy at `plane`, infinite unless all triangles keep their orientation, and its gradient.
+double energy(const DiscGeometry& disc, const std::vector<RestTriangle>& rest, const Points& plane,
+              Points& gradient) {
   double sum = 0;
+  gradient.setZero(plane.size());
   for (std::size_t t = 0; t < rest.size(); ++t) {
-    const Matrix2d F = deformation(rest[t], disc.faces[t], plane);
-    const double det = F.determinant();
-    if (det <= 0) return std::numeric_limits<double>::infinity();
-    const double norm2 = F.squaredNorm();
-    sum += rest[t].area * 0.5 * (norm2 + norm2 / (det * det));
+    const auto& f = disc.faces[t];
+    const auto [a, b] = LinearMap(rest[t], f, plane);
+    const double det = std::norm(a) - std::norm(b), mean_square = std::norm(a) + std::norm(b);
+    if (!(det > 0)) return std::numeric_limits<double>::infinity();
+    const double spread = 1 + 1 / (det * det), squeeze = 2 * mean_square / (det * det * det);
+    sum += rest[t].area * mean_square * spread;
+    const Vec2 by_a = 2 * rest[t].area * (spread - squeeze) * a,
+               by_b = 2 * rest[t].area * (spread + squeeze) * b;
+    for (int k = 0; k < 3; ++k) gradient[f[k]] += by_a * rest[t].hat[k] + by_b * std::conj(rest[t].hat[k]);
   }
   return sum;
 }
 
-/// F = U diag(s) V^T in closed form, both rotations; det F > 0.
-struct Rotations {
-  Matrix2d U, V;
-  Vector2d s;
-};
-
-Rotations decompose(const Matrix2d& F) {
-  const double sum_angle = std::atan2(F(1, 0) - F(0, 1), F(0, 0) + F(1, 1));
-  const double difference_angle = std::atan2(F(1, 0) + F(0, 1), F(0, 0) - F(1, 1));
-  const double sum = std::hypot(F(0, 0) + F(1, 1), F(1, 0) - F(0, 1));
-  const double difference = std::hypot(F(0, 0) - F(1, 1), F(1, 0) + F(0, 1));
-  return {Eigen::Rotation2Dd(0.5 * (sum_angle + difference_angle)).toRotationMatrix(),
-          Eigen::Rotation2Dd(0.5 * (difference_angle - sum_angle)).toRotationMatrix(),
-          Vector2d(0.5 * (sum + difference), 0.5 * (sum - difference))};
+/// The slope of the energy along a stretch, over the stretch's distance from 1: how stiff a triangle is.
+double stiffness(double s) {
+  return (1 + 1 / s) * (1 + 1 / (s * s));
 }
 
-/// The Newton system of the whole disc: its pattern is built once.
-class NewtonSystem {
+/// The Laplacian that stands for the energy's Hessian; its pattern is built once.
+class WeightedLaplacian {
  public:
-  explicit NewtonSystem(const DiscGeometry& disc) : disc_(disc) {
-    const auto size = static_cast<Eigen::Index>(2 * disc.vertices);
+  WeightedLaplacian(const DiscGeometry& disc, const std::vector<RestTriangle>& rest)
+      : disc_(disc), rest_(rest) {
+    const auto size = static_cast<Eigen::Index>(disc.vertices);
     std::vector<Eigen::Triplet<double>> pattern;
-    pattern.reserve(21 * disc.faces.size());
+    pattern.reserve(6 * disc.faces.size());
     for_each_entry([&](std::size_t, int, int row, int column) { pattern.emplace_back(row, column, 0); });
-    hessian_.resize(size, size);
-    hessian_.setFromTriplets(pattern.begin(), pattern.end());
+    matrix_.resize(size, size);
+    matrix_.setFromTriplets(pattern.begin(), pattern.end());
     slots_.resize(disc.faces.size());
     for_each_entry([&](std::size_t t, int entry, int row, int column) {
-      const int* first = hessian_.innerIndexPtr() + hessian_.outerIndexPtr()[column];
-      const int* last = hessian_.innerIndexPtr() + hessian_.outerIndexPtr()[column + 1];
-      slots_[t][entry] = static_cast<int>(std::lower_bound(first, last, row) - hessian_.innerIndexPtr());
+      const int* first = matrix_.innerIndexPtr() + matrix_.outerIndexPtr()[column];
+      const int* last = matrix_.innerIndexPtr() + matrix_.outerIndexPtr()[column + 1];
+      slots_[t][entry] = static_cast<int>(std::lower_bound(first, last, row) - matrix_.innerIndexPtr());
     });
-    gradient_.resize(size);
-    solver_.analyzePattern(hessian_);
+    solver_.analyzePattern(matrix_);
   }
 
-  /// The Newton step at `plane`; false when the system cannot be solved.
-  bool step(const std::vector<RestTriangle>& rest, const std::vector<Vec2>& plane, VectorXd& direction) {
-    std::fill_n(hessian_.valuePtr(), hessian_.nonZeros(), 0.0);
-    gradient_.setZero();
-    for (std::size_t t = 0; t < rest.size(); ++t) add_triangle(t, rest[t], plane);
+  /// Weighs the triangles by how `plane` stretches them; false when the matrix cannot be factored.
+  bool renew(const Points& plane) {
+    std::fill_n(matrix_.valuePtr(), matrix_.nonZeros(), 0.0);
+    for (std::size_t t = 0; t < rest_.size(); ++t)
+      add_triangle(t, LinearMap(rest_[t], disc_.faces[t], plane));
     // The energy does not see motions of the plane: a trace of the diagonal holds them.
-    const double hold = 1e-8 * hessian_.diagonal().mean();
-    for (Eigen::Index i = 0; i < hessian_.rows(); ++i) hessian_.coeffRef(i, i) += hold;
-    solver_.factorize(hessian_);
-    if (solver_.info() != Eigen::Success) return false;
-    direction = solver_.solve(-gradient_);
-    return direction.allFinite();
+    const double hold = 1e-8 * matrix_.diagonal().mean();
+    for (Eigen::Index i = 0; i < matrix_.rows(); ++i) matrix_.coeffRef(i, i) += hold;
+    solver_.factorize(matrix_);
+    return solver_.info() == Eigen::Success;
   }
 
-  [[nodiscard]] const VectorXd& gradient() const { return gradient_; }
+  [[nodiscard]] Points solve(const Points& right) const {
+    using Rows = Eigen::Matrix<double, Eigen::Dynamic, 2, Eigen::RowMajor>;
+    Points solved(right.size());
+    Eigen::Map<Rows>(reinterpret_cast<double*>(solved.data()), right.size(), 2) =
+        solver_.solve(Eigen::Map<const Rows>(reinterpret_cast<const double*>(right.data()), right.size(), 2));
+    return solved;
+  }
 
  private:
-  /// Calls visit(face, entry, row, column) for the lower triangle of each face's 6 x 6 block.
+  /// Calls visit(face, entry, row, column) for the lower triangle of each face's 3 x 3 block.
   template <class Visit>
   void for_each_entry(Visit visit) const {
     for (std::size_t t = 0; t < disc_.faces.size(); ++t) {
       int entry = 0;
-      for (int i = 0; i < 6; ++i)
+      for (int i = 0; i < 3; ++i)
         for (int j = 0; j <= i; ++j) {
-          const int a = 2 * disc_.faces[t][i / 2] + i % 2, b = 2 * disc_.faces[t][j / 2] + j % 2;
-          visit(t, entry++, std::max(a, b), std::min(a, b));
+          const auto [column, row] = std::minmax(disc_.faces[t][i], disc_.faces[t][j]);
+          visit(t, entry++, row, column);
         }
     }
   }
 
-  void add_triangle(std::size_t t, const RestTriangle& rest, const std::vector<Vec2>& plane) {
-    const auto& f = disc_.faces[t];
-    const auto [U, V, s] = decompose(deformation(rest, f, plane));
-    const double s1 = s[0], s2 = s[1];
-    const Vector2d slope(s1 - 1 / (s1 * s1 * s1), s2 - 1 / (s2 * s2 * s2));
-    const double cube = s1 * s1 * s1 * s2 * s2 * s2;
-    const std::array<double, 4> eigenvalue = {
-        1 + 3 / (s1 * s1 * s1 * s1), 1 + 3 / (s2 * s2 * s2 * s2),
-        std::max(0.0, 1 - (s1 * s1 - s1 * s2 + s2 * s2) / cube),  // twist
-        1 + (s1 * s1 + s1 * s2 + s2 * s2) / cube};                // shear
-    std::array<Vector2d, 3> turned;                               // hat gradients in the frame of V
-    for (int k = 0; k < 3; ++k) {
-      turned[k] = V.transpose() * rest.gradient[k];
-      const Vector2d pull = rest.area * (U * slope.cwiseProduct(turned[k]));
-      gradient_.segment<2>(2 * f[k]) += pull;
-    }
-    std::array<Eigen::Matrix<double, 6, 1>, 4> mode;
-    const double half = std::sqrt(0.5);
-    for (int k = 0; k < 3; ++k) {
-      const double x = turned[k][0], y = turned[k][1];
-      mode[0].segment<2>(2 * k) = U.col(0) * x;
-      mode[1].segment<2>(2 * k) = U.col(1) * y;
-      mode[2].segment<2>(2 * k) = half * (U.col(1) * x - U.col(0) * y);
-      mode[3].segment<2>(2 * k) = half * (U.col(1) * x + U.col(0) * y);
-    }
-    Eigen::Matrix<double, 6, 6> block = Eigen::Matrix<double, 6, 6>::Zero();
-    for (int m = 0; m < 4; ++m) block += (rest.area * eigenvalue[m]) * mode[m] * mode[m].transpose();
+  void add_triangle(std::size_t t, const LinearMap& map) {
+    const double a = std::abs(map.a), b = std::abs(map.b);
+    const double along = stiffness(a + b), across = stiffness(a - b);
+    // The direction of the larger stretch, as a square; any when both are the same.
+    const Vec2 direction = b > 0 ? map.b * std::conj(map.a) / (a * b) : Vec2(0);
+    const double both = 2 * rest_[t].area * (along + across);
+    const Vec2 apart = 2 * rest_[t].area * (along - across) * direction;
     int entry = 0;
-    for (int i = 0; i < 6; ++i)
-      for (int j = 0; j <= i; ++j) hessian_.valuePtr()[slots_[t][entry++]] += block(i, j);
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j <= i; ++j) {
+        const Vec2 p = rest_[t].hat[i], q = rest_[t].hat[j];
+        matrix_.valuePtr()[slots_[t][entry++]] += both * dot(p, q) + dot(apart, p * q);
+      }
   }
 
   const DiscGeometry& disc_;
-  SparseMatrix hessian_;  // lower triangle
-  std::vector<std::array<int, 21>> slots_;
-  VectorXd gradient_;
+  const std::vector<RestTriangle>& rest_;
+  SparseMatrix matrix_;  // lower triangle
+  std::vector<std::array<int, 6>> slots_;
   Eigen::SimplicialLDLT<SparseMatrix> solver_;
 };
 
-std::vector<Vec2> moved(const std::vector<Vec2>& plane, const VectorXd& direction, double t) {
-  std::vector<Vec2> result(plane.size());
-  for (std::size_t v = 0; v < plane.size(); ++v) {
-    const auto row = static_cast<Eigen::Index>(2 * v);
-    result[v] = plane[v] + t * Vec2(direction[row], direction[row + 1]);
-  }
-  return result;
+double inner(const Points& p, const Points& q) {
+  return p.dot(q).real();
 }
+
+/// The steps last taken, by which L-BFGS corrects the Laplacian (two-loop recursion, Nocedal 1980).
+class History {
+ public:
+  void clear() { steps_.clear(); }
+
+  void add(Points step, Points change) {
+    const double curvature = inner(step, change);
+    if (!(curvature > 0)) return;
+    steps_.push_back({std::move(step), std::move(change), curvature});
+    if (steps_.size() > memory) steps_.pop_front();
+  }
+
+  [[nodiscard]] Points direction(const WeightedLaplacian& laplacian, Points gradient) const {
+    std::array<double, memory> share;
+    for (std::size_t i = steps_.size(); i-- > 0;) {
+      share[i] = inner(steps_[i].step, gradient) / steps_[i].curvature;
+      gradient -= share[i] * steps_[i].change;
+    }
+    Points direction = laplacian.solve(gradient);
+    for (std::size_t i = 0; i < steps_.size(); ++i)
+      direction += (share[i] - inner(steps_[i].change, direction) / steps_[i].curvature) * steps_[i].step;
+    return -direction;
+  }
+
+ private:
+  static constexpr std::size_t memory = 5;
+  struct Step {
+    Points step, change;  ///< Of the places, and of the gradient.
+    double curvature;
+  };
+  std::deque<Step> steps_;
+};
 
 }  // namespace
 
-std::vector<Vec2> relax_symmetric_dirichlet(const DiscGeometry& disc, std::vector<Vec2> plane,
+std::vector<Vec2> relax_symmetric_dirichlet(const DiscGeometry& disc, const std::vector<Vec2>& plane,
                                             const SymmetricDirichletOptions& options) {
   constexpr double sufficient = 1e-4;  // Armijo
   constexpr int most_halvings = 12;
-  constexpr double most_steps = 8;  // Newton steps that one line search may go
+  constexpr int most_steps = 10;    // on one Laplacian
+  constexpr double outdated = 0.8;  // of the energy at which the Laplacian was weighted
   const std::vector<RestTriangle> rest = rest_triangles(disc);
-  double value = energy(disc, rest, plane);
+  Points at = Eigen::Map<const Points>(plane.data(), static_cast<Eigen::Index>(plane.size()));
+  Points gradient, next, next_gradient;
+  double value = energy(disc, rest, at, gradient);
   if (!std::isfinite(value)) return plane;
-  NewtonSystem system(disc);
-  VectorXd direction;
-  for (int iteration = 0; iteration < options.max_iterations; ++iteration) {
-    if (!system.step(rest, plane, direction)) break;
-    const double slope = system.gradient().dot(direction);
-    const double longest =
-        0.9 * first_collapse(disc, plane, moved(plane, direction, most_steps)) * most_steps;
-    const double before = value;
-    double t = std::min(1.0, longest);
-    for (int halving = 0; halving < most_halvings; ++halving, t *= 0.5) {
-      const double reached = energy(disc, rest, moved(plane, direction, t));
-      if (reached > value + sufficient * t * slope) continue;
-      value = reached;
-      // Near a collapse the energy is of inverse squares, on which a Newton step goes a third of the way
-      // only.
-      while (2 * t <= longest) {
-        const double further = energy(disc, rest, moved(plane, direction, 2 * t));
-        if (further >= value) break;
-        value = further;
-        t *= 2;
-      }
-      plane = moved(plane, direction, t);
-      break;
+  WeightedLaplacian laplacian(disc, rest);
+  History history;
+  double weighted_at = 0;
+  int steps = most_steps, small = 0;
+  for (int iteration = 0; iteration < options.max_iterations && small < 2; ++iteration) {
+    if (steps == most_steps || value < outdated * weighted_at) {
+      if (!laplacian.renew(at)) break;
+      history.clear();
+      weighted_at = value;
+      steps = 0;
     }
-    if (before - value <= options.tolerance * value) break;
+    const Points direction = history.direction(laplacian, gradient);
+    const double slope = inner(gradient, direction);
+    next = at + direction;
+    double t =
+        std::min(1.0, 0.9 * first_collapse(disc, {at.data(), plane.size()}, {next.data(), plane.size()}));
+    double reached = std::numeric_limits<double>::infinity();
+    for (int halving = 0; halving < most_halvings; ++halving, t *= 0.5) {
+      next = at + t * direction;
+      reached = energy(disc, rest, next, next_gradient);
+      if (reached <= value + sufficient * t * slope) break;
+    }
+    if (!(reached < value)) {
+      // No way down along this direction: with a new Laplacian there may be one.
+      if (steps == 0) break;
+      steps = most_steps;
+      continue;
+    }
+    history.add(next - at, next_gradient - gradient);
+    small = value - reached < options.tolerance * value ? small + 1 : 0;
+    std::swap(at, next);
+    std::swap(gradient, next_gradient);
+    value = reached;
+    ++steps;
   }
-  return plane;
+  return {at.data(), at.data() + at.size()};
 }
 
 }  // namespace applique

@@ -17,7 +17,7 @@ namespace applique {
 namespace {
 
 constexpr const char* validation_layer = "VK_LAYER_KHRONOS_validation";
-constexpr std::uint32_t needed_storage_buffers = 9;
+constexpr std::uint32_t needed_storage_buffers = 10;
 
 // Filled by the validation layers' callback, from any thread.
 struct MessageLog {

@@ -6,8 +6,6 @@
 #include <cstring>
 #include <tuple>
 
-#include <fmt/format.h>
-
 #include "applique/transfer/raster.h"
 #include "applique/transfer/refine.h"
 
@@ -138,30 +136,25 @@ struct GpuTransfer::Run {
   bool keep_samples;
   int bits;  // To round to.
   TransferResult result{};
-  Buffer decal{};
+  std::vector<Buffer> decal{};  // The levels' texels, in as many pieces as the largest buffer asks for.
   std::size_t first_level = 0;  // In `decal`, once that is there.
   std::vector<shader::vec4> table{};
   Buffer large_table{};
 
   std::vector<RefinedFace> refined{};  // By face; not cut where linear.
 
-  Result<void> upload_decal(const Device& device, std::size_t needed_level);
+  Result<void> upload_decal(const Device& device, std::size_t needed_level, std::size_t piece_texels);
 };
 
-Result<void> GpuTransfer::Run::upload_decal(const Device& device, std::size_t needed_level) {
-  if (decal.size() > 0 && first_level <= needed_level) return {};
+Result<void> GpuTransfer::Run::upload_decal(const Device& device, std::size_t needed_level,
+                                            std::size_t piece_texels) {
+  if (!decal.empty() && first_level <= needed_level) return {};
   const std::vector<std::uint16_t> halves = packed_levels(*transfer.image, needed_level);
-  const std::uint64_t bytes = halves.size() * sizeof(std::uint16_t);
-  if (bytes > device.properties().limits.maxStorageBufferRange) {
-    return fail(
-        ErrorCode::device_failed,
-        fmt::format(
-            "a decal image of {} x {} pixels needs {} MB in one piece, more than the device '{}' allows "
-            "({} MB); use a smaller image or another device",
-            transfer.image->levels[0].width, transfer.image->levels[0].height, bytes >> 20, device.name(),
-            device.properties().limits.maxStorageBufferRange >> 20));
+  decal.clear();
+  for (std::size_t first = 0; first < halves.size(); first += 4 * piece_texels) {
+    const auto piece = std::span(halves).subspan(first, std::min(4 * piece_texels, halves.size() - first));
+    APPLIQUE_TRY(decal.emplace_back(), make_buffer(device, "decal image", piece, storage));
   }
-  APPLIQUE_TRY(decal, make_buffer(device, "decal image", halves, storage));
   first_level = needed_level;
   return {};
 }
@@ -171,6 +164,10 @@ Result<GpuTransfer> GpuTransfer::create(const Device& device, const GpuTransferO
   result.device_ = &device;
   result.options_ = options;
   result.options_.tile = std::clamp(options.tile, 8, 16384);
+  const std::uint64_t device_limit = device.properties().limits.maxStorageBufferRange;
+  result.options_.max_buffer_bytes =
+      options.max_buffer_bytes == 0 ? device_limit
+                                    : std::clamp<std::uint64_t>(options.max_buffer_bytes, 4096, device_limit);
   APPLIQUE_TRY(
       result.cover_,
       ComputePipeline::create(
@@ -189,7 +186,7 @@ Result<const ComputePipeline*> GpuTransfer::shading_pipeline(Shading shading, st
   if (found == shade_.end()) {
     ComputePipelineInfo info{"transfer shade",
                              applique_spirv_transfer_shade,
-                             {0, 1, 2, 3, 4, 5, 6, 8},
+                             {0, 1, 2, 3, 4, 5, 6, 8, 10},
                              {7},
                              sizeof(shader::TransferConstants),
                              {shading != Shading::linear ? 1U : 0U, groups}};
@@ -240,7 +237,7 @@ Result<void> GpuTransfer::run_tile(Run& run, std::uint32_t sheet, const TexelRec
   const std::size_t largest =
       std::max({16 * work_texels, 4 * region_texels, plan.jobs.size() * sizeof(plan.jobs[0]),
                 plan.placements.size() * sizeof(shader::FaceMap)});
-  if (largest > device.properties().limits.maxStorageBufferRange && std::max(tile.width, tile.height) > 1) {
+  if (largest > options_.max_buffer_bytes && std::max(tile.width, tile.height) > 1) {
     const int left = (tile.width + 1) / 2, top = (tile.height + 1) / 2;
     for (const TexelRect& part :
          {TexelRect{tile.x, tile.y, left, top}, TexelRect{tile.x + left, tile.y, tile.width - left, top},
@@ -263,7 +260,8 @@ Result<void> GpuTransfer::run_tile(Run& run, std::uint32_t sheet, const TexelRec
     finest = std::min(finest, face.footprint.level);
     warped |= face.warped && refined.cells == 0;
   }
-  APPLIQUE_CHECK(run.upload_decal(device, static_cast<std::size_t>(finest)));
+  const std::size_t piece_texels = options_.max_buffer_bytes / (4 * sizeof(std::uint16_t));
+  APPLIQUE_CHECK(run.upload_decal(device, static_cast<std::size_t>(finest), piece_texels));
   const Shading shading = !warped                                           ? Shading::linear
                           : run.table.size() <= shader::warp_table_capacity ? Shading::warped
                                                                             : Shading::large_warp;
@@ -301,6 +299,10 @@ Result<void> GpuTransfer::run_tile(Run& run, std::uint32_t sheet, const TexelRec
   APPLIQUE_TRY(const Buffer outcome_buffer,
                Buffer::create(device, "outcome", sizeof(OutcomeCounts) + sample_bytes, storage));
 
+  APPLIQUE_TRY(
+      const Buffer sum_buffer,
+      Buffer::create(device, "sums of pieces", 16 * (run.decal.size() > 1 ? work_texels : 1), storage));
+
   shader::TransferConstants constants{};
   constants.region_size = {region.width, region.height};
   constants.work_origin = {work.x - region.x, work.y - region.y};
@@ -322,11 +324,10 @@ Result<void> GpuTransfer::run_tile(Run& run, std::uint32_t sheet, const TexelRec
   cover_.bind({{0, &owner_buffer}, {2, &job_buffer}});
   nearest_.bind({{0, &owner_buffer}, {1, &nearest_buffer}, {2, &near_block_buffer}});
   std::vector<ComputePipeline::Binding> bindings = {
-      {0, &owner_buffer}, {1, &nearest_buffer}, {2, &block_buffer}, {3, &face_buffer}, {4, &texel_buffer},
-      {5, &run.decal},    {6, &outcome_buffer}, {7, &table_buffer}, {8, &point_buffer}};
+      {0, &owner_buffer},   {1, &nearest_buffer}, {2, &block_buffer}, {3, &face_buffer}, {4, &texel_buffer},
+      {6, &outcome_buffer}, {7, &table_buffer},   {8, &point_buffer}, {10, &sum_buffer}};
   if (shading == Shading::large_warp) bindings.push_back({9, &run.large_table});
-  shade->bind(bindings);
-
+  bindings.push_back({5, nullptr});  // The decal's piece.
   const std::uint32_t most_groups = device.properties().limits.maxComputeWorkGroupCount[0];
   const auto dispatch = [&](VkCommandBuffer commands, const ComputePipeline& pipeline, std::size_t first,
                             std::size_t last) {
@@ -348,8 +349,17 @@ Result<void> GpuTransfer::run_tile(Run& run, std::uint32_t sheet, const TexelRec
     dispatch(commands, cover_, 0, foreign_first);
     dispatch(commands, cover_, foreign_first, plan.jobs.size());
     dispatch(commands, nearest_, 0, plan.nearest_blocks.size());
-    dispatch(commands, *shade, 0, plan.blocks.size());
   }));
+  for (std::size_t i = 0; i < run.decal.size(); ++i) {
+    constants.piece_first = static_cast<std::uint32_t>(i * piece_texels);
+    constants.piece_size = static_cast<std::uint32_t>(run.decal[i].size() / (4 * sizeof(std::uint16_t)));
+    constants.piece_flags =
+        (i > 0 ? shader::piece_follows : 0) | (i + 1 < run.decal.size() ? shader::piece_goes_on : 0);
+    bindings.back() = {5, &run.decal[i]};
+    shade->bind(bindings);
+    APPLIQUE_CHECK(
+        device.run([&](VkCommandBuffer commands) { dispatch(commands, *shade, 0, plan.blocks.size()); }));
+  }
 
   APPLIQUE_CHECK(texel_buffer.read(device, std::as_writable_bytes(std::span(texels))));
   for (int y = 0; y < work.height; ++y) {

@@ -12,6 +12,9 @@ namespace applique {
 
 struct GpuTransferOptions {
   int tile = 2048;  ///< Largest side of a piece of the texture that is worked on at once, texels, 8 to 16384.
+  /// Largest buffer, bytes, at least 4096; 0 is what the device allows. A tile that needs more is cut, an
+  /// image that does is gone through in pieces.
+  std::uint64_t max_buffer_bytes = 0;
 };
 
 /// Transfers decals into textures with compute shaders: the fast twin of transfer_on_cpu, with the same
