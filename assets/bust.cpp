@@ -1,8 +1,11 @@
 #include "bust.h"
 
+#include <algorithm>
 #include <array>
 
 #include <Eigen/Geometry>
+
+#include "applique/base/error.h"
 
 #include "polygonise.h"
 #include "sdf.h"
@@ -363,6 +366,14 @@ double bust_chart_density(int chart) {
     default:
       return 0.88;
   }
+}
+
+Vec3 bust_landmark(const std::string& name) {
+  const auto landmarks = bust_landmarks();
+  const auto found = std::find_if(landmarks.begin(), landmarks.end(),
+                                  [&](const Landmark& landmark) { return landmark.name == name; });
+  APPLIQUE_ASSERT(found != landmarks.end());
+  return found->position;
 }
 
 }  // namespace applique::assets

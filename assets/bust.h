@@ -20,6 +20,9 @@ double bust_distance(const Vec3& p);
 /// The landmarks that the jobs pin images to: the left side is the bust's own (+x).
 std::vector<Landmark> bust_landmarks();
 
+/// The place of the landmark of this name, which is one of them.
+Vec3 bust_landmark(const std::string& name);
+
 /// The chart of the bust's atlas that a piece of surface belongs to: plinth, chest, shoulders, back, neck,
 /// face, sides and back of the head. The mask crosses from the face to the sides, the emblem from chest to
 /// shoulder.

@@ -27,4 +27,13 @@ Image draw_emblem();
 /// A bottle's label, 1024 x 512, opaque but for its notched corners.
 Image draw_label();
 
+/// For the gallery: bands along a curve, and a star; transparent around.
+Image draw_snake();      ///< Three half waves, 1024 x 512.
+Image draw_horseshoe();  ///< Open at the top, 768 x 700.
+Image draw_belt();       ///< Straight, 2000 x 200.
+Image draw_star();       ///< Five points, 640 x 640.
+
+/// The middle of the snake at t, 0 at its left end and 1 at its right one.
+Pixel snake_point(double t);
+
 }  // namespace applique::assets

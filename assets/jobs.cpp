@@ -1,47 +1,16 @@
 #include "jobs.h"
 
-#include <algorithm>
-#include <cmath>
-
-#include <fmt/format.h>
-#include <nlohmann/json.hpp>
-
 #include "bottle.h"
 #include "bust.h"
-#include "glb_writer.h"
 #include "images.h"
+#include "job_file.h"
 
 namespace applique::assets {
-namespace {
 
 using nlohmann::ordered_json;
 
-ordered_json feature(Pixel image, const Vec3& position) {
-  const auto round = [](double value) { return std::round(value * 1e5) / 1e5; };
-  return {{"image", {image.x, image.y}},
-          {"position", {round(position.x()), round(position.y()), round(position.z())}}};
-}
-
-Result<void> write_job(const std::filesystem::path& path, const std::string& model, const std::string& name,
-                       const ordered_json& features) {
-  ordered_json decal{{"name", name}, {"image", name + ".png"}};
-  decal["features"] = features;
-  ordered_json job{{"version", 1}, {"model", model}};
-  job["decals"] = ordered_json::array({decal});
-  const std::string text = job.dump(2) + "\n";
-  return write_file(path, std::vector<std::uint8_t>(text.begin(), text.end()));
-}
-
-}  // namespace
-
 Result<void> write_jobs(const std::filesystem::path& folder) {
-  const auto landmarks = bust_landmarks();
-  const auto at = [&](const std::string& name) {
-    const auto found = std::find_if(landmarks.begin(), landmarks.end(),
-                                    [&](const Landmark& landmark) { return landmark.name == name; });
-    APPLIQUE_ASSERT(found != landmarks.end());
-    return found->position;
-  };
+  const auto at = bust_landmark;
   const auto right = [](Pixel left) { return Pixel{1024 - left.x, left.y}; };
   namespace place = mask_place;
   const ordered_json mask = ordered_json::array({

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "gallery.h"
 #include "glb_writer.h"
 #include "images.h"
 #include "jobs.h"
@@ -34,7 +35,7 @@ Result<void> write_previews(const std::filesystem::path& path, const Model& mode
   return write_image(path, sheet);
 }
 
-Result<void> generate(const std::filesystem::path& folder, bool previews) {
+Result<void> generate(const std::filesystem::path& folder, bool previews, bool gallery) {
   std::error_code error;
   std::filesystem::create_directories(folder, error);
   if (error)
@@ -47,6 +48,7 @@ Result<void> generate(const std::filesystem::path& folder, bool previews) {
   APPLIQUE_CHECK(write_image(folder / "emblem.png", draw_emblem()));
   APPLIQUE_CHECK(write_image(folder / "label.png", draw_label()));
   APPLIQUE_CHECK(write_jobs(folder));
+  if (gallery) APPLIQUE_CHECK(write_gallery(folder));
   if (previews) {
     APPLIQUE_CHECK(write_previews(folder / "preview-bust.png", bust, {0, 4, Vec3(0, 2.5, 0), 5.4}));
     APPLIQUE_CHECK(write_previews(folder / "preview-head.png", bust, {10, 2, Vec3(0, 3.75, 0), 2.6}));
@@ -59,14 +61,16 @@ Result<void> generate(const std::filesystem::path& folder, bool previews) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  const bool previews = argc == 3 && std::string_view(argv[2]) == "--preview";
-  if (argc != 2 && !previews) {
-    fmt::print(stderr,
-               "usage: applique_assets FOLDER [--preview]\nWrites the demo's models, images and jobs into "
-               "FOLDER.\n");
+  const std::string_view option = argc == 3 ? argv[2] : "";
+  const bool previews = option == "--preview", gallery = option == "--gallery";
+  if (argc != 2 && !previews && !gallery) {
+    fmt::print(
+        stderr,
+        "usage: applique_assets FOLDER [--preview|--gallery]\nWrites the demo's models, images and jobs "
+        "into FOLDER; with pictures of the models, or with what the gallery needs besides.\n");
     return 1;
   }
-  if (const auto done = generate(argv[1], previews); !done) {
+  if (const auto done = generate(argv[1], previews, gallery); !done) {
     fmt::print(stderr, "applique_assets: {}\n", done.error().message);
     return exit_status(done.error().code);
   }

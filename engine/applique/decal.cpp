@@ -13,6 +13,7 @@
 #include "applique/embed/align.h"
 #include "applique/embed/self_overlap.h"
 #include "applique/paper/paper_solver.h"
+#include "applique/patch/patch_influence.h"
 #include "applique/patch/seed.h"
 #include "applique/patch/sheets.h"
 #include "applique/region/clusters.h"
@@ -169,12 +170,12 @@ class Solver {
       for (std::size_t k = 0; k < features.size(); ++k)
         features[k] = interpolate(disc, growth.feature_faces()[k], input_.features[k].surface, plane);
       for (std::size_t v = 0; v < plane.size(); ++v) points_[PatchVertexId(v)].plane = plane[v];
-      choose_groups(disc, features);
+      choose_groups(disc, growth, features);
       APPLIQUE_CHECK(align(disc, growth, features, plane));
     }
     StageTimer stage(map_.times.warp);
     for (std::size_t v = 0; v < plane.size(); ++v) points_[PatchVertexId(v)].plane = plane[v];
-    warp_points(plane, features);
+    warp_points(disc, growth, plane, features);
     return {};
   }
 
@@ -197,10 +198,12 @@ class Solver {
     return {};
   }
 
-  /// Features move the image in groups while it lies over itself in the plane (§3.6 of the design). The first
-  /// embeddings are of thin patches and may mislead; later on there is no way back, so that the growth ends.
-  void choose_groups(const ImmersedDisc& disc, const std::vector<Vec2>& features) {
-    const bool graph = graph_overlaps(features, map_.graph);
+  /// Features move the image in groups while it lies over itself in the plane (§3.6 of the design; there a
+  /// graph that overlaps is enough, but in one sheet that is distortion, which a single group bends with
+  /// fewer folds). The first embeddings are of thin patches and may mislead; later on there is no way back,
+  /// so that the growth ends.
+  void choose_groups(const ImmersedDisc& disc, const Growth& growth, const std::vector<Vec2>& features) {
+    const bool graph = growth.cover_limit() > 1 && graph_overlaps(features, map_.graph);
     if (!graph && !overlaps_in_plane(disc, points_, input_.region)) {
       if (map_.solves <= trial_solves) groups_ = {};
       return;
@@ -217,12 +220,13 @@ class Solver {
   /// The warp of the embedding, and where it takes the vertices. With groups, a vertex is under the influence
   /// that its place in the image is under, which hangs on where the warp takes it: fixed-point steps from the
   /// last place (§3.7 of the design).
-  void warp_points(const std::vector<Vec2>& plane, const std::vector<Vec2>& features) {
-    find_influence();
+  void warp_points(const ImmersedDisc& disc, const Growth& growth, const std::vector<Vec2>& plane,
+                   const std::vector<Vec2>& features) {
+    find_influence(disc, growth);
     built_ = build_warp(features, targets_, map_.graph, probes(features), groups_);
     const int refreshes = groups_.count == 1 ? 0 : most_refreshes;
     for (int refresh = 0; refresh <= refreshes; ++refresh) {
-      if (refresh > 0) find_influence();
+      if (refresh > 0) find_influence(disc, growth);
       const std::vector<Vec2> image = warp_all(built_.warp, plane, influence_);
       double moved = 0;
       for (std::size_t v = 0; v < image.size(); ++v) {
@@ -234,12 +238,10 @@ class Solver {
     }
   }
 
-  void find_influence() {
-    if (groups_.count == 1) return;
-    influence_.resize(points_.size() * groups_.count);
-    for (PatchVertexId v : ids<PatchVertexId>(points_.size()))
-      influence_field_->at(points_[v].image,
-                           std::span(influence_).subspan(v.value * groups_.count, groups_.count));
+  void find_influence(const ImmersedDisc& disc, const Growth& growth) {
+    if (groups_.count > 1)
+      influence_ =
+          influence_on_patch(disc, points_, input_.region, *influence_field_, growth.feature_faces());
   }
 
   [[nodiscard]] std::string feature_range() const {

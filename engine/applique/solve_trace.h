@@ -21,7 +21,8 @@ struct SolveTrace {
     std::vector<Vec2> contour;  ///< The region's contour carried into the plane, its edges divided.
     double lambda = 1;  ///< Paper's method: less than 1 where it rolled back, the share of the way it took.
   };
-  std::vector<std::vector<VertexId>> paths;  ///< By FeatureGraph::tree: the surface vertices passed.
+  /// The surface vertices passed, by FeatureGraph::tree; in the paper's method by ConvexGraph::edges.
+  std::vector<std::vector<VertexId>> paths;
   std::vector<Step> steps;                   ///< steps[0] is the seed.
 };
 

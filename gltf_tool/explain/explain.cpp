@@ -5,6 +5,10 @@
 
 #include <fmt/format.h>
 
+#include "applique/region/clusters.h"
+#include "applique/region/influence.h"
+#include "applique/region/triangulation.h"
+
 #include "explain/digits.h"
 #include "explain/image_view.h"
 #include "explain/model_view.h"
@@ -20,6 +24,8 @@ using Step = SolveTrace::Step;
 constexpr double faded = 0.45;            // how much of the image is left under drawings
 constexpr double grid_spacing = 0.25;     // plane units: an eighth of the image's longer side
 constexpr std::size_t growth_frames = 6;  // at most, when no step is named
+
+constexpr double group_strength = 0.7;  // of a group's colour on white
 
 const Rgba inside_fill = mix(palette::white, palette::sky, 0.45);
 const Rgba outside_fill = mix(palette::white, palette::orange, 0.35);
@@ -99,10 +105,29 @@ class Picture {
   }
 
   void draw_region() {
-    const auto panels = boxes(2);
+    const auto panels = boxes(4);
+    const Pen pen = pen_for(panels[0]);
+    const FeatureGraph& graph = decal_.map.graph;
     const PlaneView view = draw_base(panels[0], 1);
-    draw_features(canvas_, targets_, view, pen_for(panels[0]));
-    draw_pairs_panel(panels[1], decal_.map.graph.visible, {}, palette::ink);
+    draw_features(canvas_, targets_, view, pen);
+    draw_pairs_panel(panels[1], graph.visible, {}, palette::ink);
+    const RegionTriangulation mesh = triangulate_region(decal_.region, targets_, graph.planar);
+    draw_features(canvas_, targets_, draw_mesh(mesh, panels[2]), pen);
+    draw_features(canvas_, targets_, draw_mesh(mesh, panels[3]), pen,
+                  cluster_features(decal_.region, targets_, graph));
+  }
+
+  /// A triangulation of the region with its contour; returns where it is.
+  PlaneView draw_mesh(const RegionTriangulation& mesh, const Box& box) {
+    const PlaneView view = draw_base(box);
+    for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
+      for (std::size_t k = 0; k < 3; ++k) {
+        if (mesh.neighbours[t][k] < static_cast<std::int32_t>(t)) continue;  // drawn from there; the contour
+        canvas_.line({view(mesh.points[mesh.triangles[t][(k + 1) % 3]]),
+                      view(mesh.points[mesh.triangles[t][(k + 2) % 3]])},
+                     pen_for(box).thin, solid(mix(palette::ink, palette::white, 0.3)));
+      }
+    return view;
   }
 
   void draw_graph() {
@@ -203,7 +228,7 @@ class Picture {
       const auto& contour = steps[shown.back()].contour;
       extent.insert(extent.end(), contour.begin(), contour.end());
     }
-    const auto panels = boxes(count);
+    const auto panels = lay_out(options_.size, count, aspect_of(extent));
     for (std::size_t i = 0; i < count; ++i) {
       draw_step(steps[shown[i]], panels[i], fit(extent, panels[i], 0.1));
       const double height = 1.6 * pen_for(panels[i]).mark;
@@ -236,48 +261,52 @@ class Picture {
     const PlaneView plane_view = fit(step->contour, panels[1], 0.06);
     const double footprint = frame.pixels_per_unit() / plane_view.scale;
     const double half_line = 0.5 * pen.thin / plane_view.scale;
-    paint_patch(canvas_, step->patch, step->plane, plane_view, panels[1],
-                [&](PatchFaceId q, const std::array<double, 3>& weights) {
-                  const auto& v = step->patch.faces[q].vertices;
-                  Vec2 z = 0;
-                  for (std::size_t k = 0; k < 3; ++k) z += weights[k] * step->image[v[k]];
-                  if (!decal_.region.contains(z)) return no_fill;
-                  const auto off = [](double x) {
-                    return std::abs(x - grid_spacing * std::round(x / grid_spacing));
-                  };
-                  if (std::min(off(z.real()), off(z.imag())) < half_line) return grid;
-                  const Rgba colour = sample_image(decal_.image, frame.to_pixel(z), footprint);
-                  return mix(palette::white, with_alpha(colour, 1), 0.8 * colour.a);
-                });
+    paint_triangles(canvas_, step->plane.raw(), triangles_of(step->patch), plane_view, panels[1],
+                    [&](std::size_t q, const std::array<double, 3>& weights) {
+                      const auto& v = step->patch.faces[PatchFaceId(q)].vertices;
+                      Vec2 z = 0;
+                      for (std::size_t k = 0; k < 3; ++k) z += weights[k] * step->image[v[k]];
+                      if (!decal_.region.contains(z)) return no_fill;
+                      const auto off = [](double x) {
+                        return std::abs(x - grid_spacing * std::round(x / grid_spacing));
+                      };
+                      if (std::min(off(z.real()), off(z.imag())) < half_line) return grid;
+                      const Rgba colour = sample_image(decal_.image, frame.to_pixel(z), footprint);
+                      return mix(palette::white, with_alpha(colour, 1), 0.8 * colour.a);
+                    });
     draw_contour(canvas_, step->contour, plane_view, pen.line);
     draw_features(canvas_, step->features, plane_view, pen);
     return {};
   }
 
-  /// The image coloured by which group of features moves it there.
+  /// The region coloured by how much each group of features moves it, and by the group that does most: the
+  /// paper's segments.
   void draw_influence() {
-    const Box box = boxes(1)[0];
-    const PlaneView view = draw_base(box);
-    const DecalMap& map = decal_.map;
-    const Outline contour = view(decal_.region.polygon());
-    canvas_.begin_clip(std::span(&contour, 1));
-    paint_patch(
-        canvas_, map.patch, map.image, view, box, [&](PatchFaceId q, const std::array<double, 3>& weights) {
-          Rgba sum = {0, 0, 0, 0.6};
-          for (std::size_t g = 0; g < map.groups; ++g) {
-            double influence = 0;
-            for (std::size_t k = 0; k < 3; ++k)
-              influence += weights[k] * map.influence[map.patch.faces[q].vertices[k].value * map.groups + g];
-            const Rgba& colour = palette::group(g);
-            sum.r += influence * colour.r;
-            sum.g += influence * colour.g;
-            sum.b += influence * colour.b;
-          }
-          return sum;
-        });
-    canvas_.end_clip();
-    draw_contour(canvas_, decal_.region.polygon(), view, pen_for(box).line);
-    draw_features(canvas_, targets_, view, pen_for(box), map.warp.group);
+    const auto panels = boxes(2);
+    const auto groups = cluster_features(decal_.region, targets_, decal_.map.graph);
+    const InfluenceField field(decal_.region, targets_, decal_.map.graph, groups);
+    const RegionTriangulation& mesh = field.triangulation();
+    const auto labels = field.segment_labels();
+    const auto blend = [&](std::size_t t, const std::array<double, 3>& weights) {
+      Rgba sum = {0, 0, 0, 1};
+      for (std::size_t k = 0; k < 3; ++k)
+        for (std::uint32_t g = 0; g < field.groups(); ++g) {
+          const double share = weights[k] * field.at_point(mesh.triangles[t][k])[g];
+          sum.r += share * palette::group(g).r;
+          sum.g += share * palette::group(g).g;
+          sum.b += share * palette::group(g).b;
+        }
+      return mix(palette::white, sum, group_strength);
+    };
+    const auto label = [&](std::size_t t, const std::array<double, 3>&) {
+      return mix(palette::white, palette::group(labels[t]), group_strength);
+    };
+    for (const auto& [box, colour] : {std::pair<Box, PlaceColour>{panels[0], blend}, {panels[1], label}}) {
+      const PlaneView view = view_of_image(decal_, box);
+      paint_triangles(canvas_, mesh.points, mesh.triangles, view, box, colour);
+      draw_contour(canvas_, decal_.region.polygon(), view, pen_for(box).line);
+      draw_features(canvas_, targets_, view, pen_for(box), groups);
+    }
   }
 
   Result<void> draw_final_patch() {

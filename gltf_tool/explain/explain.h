@@ -15,13 +15,13 @@ namespace applique {
 
 /// What a picture explains.
 enum class Stage {
-  region,     ///< The image with contour, features, the pairs that see each other.
+  region,     ///< Contour and features, pairs, triangulation, groups (Fig. 13).
   graph,      ///< Visible pairs, the planar graph, the tree (Fig. 3 of the paper).
   paths,      ///< The tree in the image, and as shortest paths on the model (Fig. 5).
   seed,       ///< The first patch on the model, and its embedding (Fig. 8).
   growth,     ///< The embedded patch and the warped contour, step by step (Fig. 9, 15 to 17).
   warp,       ///< The image and what the warp makes of it in the plane (Fig. 12, 20).
-  influence,  ///< Where which group of features moves the image (Fig. 13).
+  influence,  ///< Where which group moves the image; its segments (Fig. 13).
   patch,      ///< The final patch on the model, and in texture coordinates (Fig. 22).
 };
 

@@ -17,8 +17,8 @@ constexpr double outside_share = 0.3;  // of the strength inside the region
 
 Pen pen_for(const Box& box) {
   const double unit = std::min(box.size.real(), box.size.imag()) / 400;
-  return {std::max(0.6, 0.9 * unit), std::max(0.9, 1.8 * unit), std::max(1.2, 3.2 * unit),
-          std::max(3.0, 9 * unit)};
+  return {std::max(0.6, 0.9 * unit), std::max(1.2, 1.8 * unit), std::max(2.0, 3.2 * unit),
+          std::max(5.5, 9 * unit)};
 }
 
 PlaneView view_of_image(const SolvedDecal& decal, const Box& box) {

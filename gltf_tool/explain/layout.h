@@ -23,6 +23,9 @@ struct Box {
 /// over height) largest.
 std::vector<Box> lay_out(PictureSize size, std::size_t count, double aspect);
 
+/// Width over height of the points' bounding box.
+double aspect_of(std::span<const Vec2> points);
+
 /// Where points of a plane (y up) are in a picture (y down).
 struct PlaneView {
   Vec2 centre;       ///< Plane.

@@ -87,18 +87,27 @@ void draw_patch(Canvas& canvas, const Patch& patch, const IdVector<PatchVertexId
       const PatchFaceId across = patch.faces[q].neighbours[k];
       if (across.valid() && across < q) continue;  // drawn from there
       canvas.line({corners[(k + 1) % 3], corners[(k + 2) % 3]}, across.valid() ? line_width : 2 * line_width,
-                  solid(mix(palette::ink, palette::white, 0.2)));
+                  solid(mix(palette::ink, palette::white, across.valid() ? 0.4 : 0.1)));
     }
   }
 }
 
-void paint_patch(Canvas& canvas, const Patch& patch, const IdVector<PatchVertexId, Vec2>& at,
-                 const PlaneView& view, const Box& box, const PlaceColour& colour) {
+std::vector<TriangleCorners> triangles_of(const Patch& patch) {
+  std::vector<TriangleCorners> triangles;
+  for (const auto& [mesh_face, v, neighbours] : patch.faces)
+    triangles.push_back({v[0].value, v[1].value, v[2].value});
+  return triangles;
+}
+
+void paint_triangles(Canvas& canvas, std::span<const Vec2> points, std::span<const TriangleCorners> triangles,
+                     const PlaneView& view, const Box& box, const PlaceColour& colour) {
   SampleGrid grid(box);
-  for (PatchFaceId q : ids<PatchFaceId>(patch.faces.size()))
-    grid.fill(corners_of(patch.faces[q], at, view), [&](double a, double b, double c) {
-      return colour(q, {a, b, c});
+  for (std::size_t t = 0; t < triangles.size(); ++t) {
+    const auto& [a, b, c] = triangles[t];
+    grid.fill({view(points[a]), view(points[b]), view(points[c])}, [&](double wa, double wb, double wc) {
+      return colour(t, {wa, wb, wc});
     });
+  }
   canvas.fill(box.outline(), [&](Vec2 pixel) { return grid(pixel); });
 }
 

@@ -1,8 +1,10 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <functional>
 #include <span>
+#include <vector>
 
 #include "applique/image/draw.h"
 #include "applique/patch/patch.h"
@@ -10,7 +12,7 @@
 #include "explain/layout.h"
 #include "solve_job.h"
 
-/// Drawings of a patch laid out flat, in its embedding or in the image.
+/// Drawings of triangles in the plane or in the image: patches laid out flat, the region.
 namespace applique {
 
 /// The colour of a patch's face; transparent where it is not to be filled.
@@ -20,11 +22,17 @@ using FaceColour = std::function<draw::Rgba(PatchFaceId)>;
 void draw_patch(draw::Canvas& canvas, const Patch& patch, const IdVector<PatchVertexId, Vec2>& at,
                 const PlaneView& view, const FaceColour& colour, double line_width);
 
-/// The colour at a place of a face, given by the weights of its corners.
-using PlaceColour = std::function<draw::Rgba(PatchFaceId, const std::array<double, 3>& weights)>;
+using TriangleCorners = std::array<std::uint32_t, 3>;
 
-/// The patch painted place by place, nine samples a pixel; later faces cover earlier ones.
-void paint_patch(draw::Canvas& canvas, const Patch& patch, const IdVector<PatchVertexId, Vec2>& at,
-                 const PlaneView& view, const Box& box, const PlaceColour& colour);
+/// The corners of the patch's faces, by index of its vertices.
+std::vector<TriangleCorners> triangles_of(const Patch& patch);
+
+/// The colour at a place of a triangle, given by its index and the weights of its corners.
+using PlaceColour = std::function<draw::Rgba(std::size_t, const std::array<double, 3>& weights)>;
+
+/// Triangles painted place by place, nine samples a pixel; later ones cover earlier ones.
+void paint_triangles(draw::Canvas& canvas, std::span<const Vec2> points,
+                     std::span<const TriangleCorners> triangles, const PlaneView& view, const Box& box,
+                     const PlaceColour& colour);
 
 }  // namespace applique

@@ -1,11 +1,13 @@
 #include "applique/paper/forward_warp.h"
 
+#include <algorithm>
 #include <cstdio>
 
 #include <gtest/gtest.h>
 
 #include "applique/base/predicates.h"
-#include "applique/paper/feature_groups.h"
+#include "applique/region/clusters.h"
+#include "applique/region/influence.h"
 #include "applique/warp/build_warp.h"
 
 namespace applique {
@@ -24,17 +26,19 @@ struct CrossedArms {
              {760, 150}, {560, 400}, {280, 660}, {370, 850}, {630, 850}, {720, 660}, {440, 400}, {240, 150}})
       to.push_back(frame.to_plane(p));
     graph = build_feature_graph(region, from);
-    groups = group_features(region, from, graph);
+    group = cluster_features(region, from, graph);
+    groups = *std::max_element(group.begin(), group.end()) + 1;
   }
 
   Region region = *Region::from_contour(
       {{0, 0}, {240, 0}, {240, 720}, {760, 720}, {760, 0}, {1000, 0}, {1000, 1000}, {0, 1000}}, frame);
   std::vector<Vec2> from, to;
   FeatureGraph graph;
-  FeatureGroups groups;
+  std::uint32_t groups = 1;
+  std::vector<std::uint32_t> group;
 };
 
-int count_flips(const ImageTriangulation& triangulation, const std::vector<Vec2>& points) {
+int count_flips(const RegionTriangulation& triangulation, const std::vector<Vec2>& points) {
   int flips = 0;
   for (const auto& t : triangulation.triangles)
     flips += orientation(points[t[0]], points[t[1]], points[t[2]]) <= 0 ? 1 : 0;
@@ -64,33 +68,28 @@ TEST(ForwardWarp, FindsThePairThatCollides) {
   EXPECT_EQ(colliding_pair(turn), 1u);
 }
 
-TEST(FeatureGroups, SplitAUIntoItsParts) {
-  const CrossedArms arms;
-  const auto& group = arms.groups.group;
-  EXPECT_GE(arms.groups.count, 2u);
-  EXPECT_EQ(group[0], group[1]);
-  EXPECT_EQ(group[6], group[7]);
-  EXPECT_NE(group[0], group[7]);
-}
-
 TEST(ForwardWarp, FoldsByThePapersRuleWhereArmsCrossAndNotByTheProductRule) {
   const CrossedArms arms;
-  ForwardWarp paper{arms.from, arms.to, arms.graph.visible, arms.groups.count, arms.groups.group};
+  ForwardWarp paper{arms.from, arms.to, arms.graph.visible, arms.groups, arms.group};
   Warp product = build_warp(arms.from, arms.to, arms.graph, {}).warp;
-  product.groups = arms.groups.count;
-  product.group = arms.groups.group;
+  product.groups = arms.groups;
+  product.group = arms.group;
   int before = 0;
   for (const double edge : {0.1, 0.05, 0.025}) {
-    const InfluenceArea area = spread_influence(arms.region, arms.from, arms.graph, arms.groups, edge);
-    const auto& points = area.triangulation.points;
-    const int by_paper = count_flips(area.triangulation, warp_forward(paper, points, area.influence));
+    const InfluenceField field(arms.region, arms.from, arms.graph, arms.group,
+                               {edge / arms.region.diameter()});
+    const auto& points = field.triangulation().points;
+    std::vector<double> influence;
     std::vector<Vec2> warped;
-    for (std::size_t p = 0; p < points.size(); ++p)
-      warped.push_back(
-          product(points[p], std::span(area.influence).subspan(p * arms.groups.count, arms.groups.count)));
-    const int by_product = count_flips(area.triangulation, warped);
+    for (std::uint32_t p = 0; p < points.size(); ++p) {
+      const auto at = field.at_point(p);
+      influence.insert(influence.end(), at.begin(), at.end());
+      warped.push_back(product(points[p], at));
+    }
+    const int by_paper = count_flips(field.triangulation(), warp_forward(paper, points, influence));
+    const int by_product = count_flips(field.triangulation(), warped);
     std::printf("edges of %.4f: %zu triangles, %d turned over by the paper's rule, %d by the product rule\n",
-                edge, area.triangulation.triangles.size(), by_paper, by_product);
+                edge, field.triangulation().triangles.size(), by_paper, by_product);
     EXPECT_GT(by_paper, before);
     EXPECT_EQ(by_product, 0);
     before = by_paper;

@@ -9,6 +9,7 @@
 #include <rapidcheck/gtest.h>
 
 #include "applique/region/clusters.h"
+
 #include "region/contours.h"
 
 namespace applique {
@@ -103,6 +104,13 @@ RC_GTEST_PROP(Influence, SumsToOneWithinBounds, ()) {
     for (const double value : influence) RC_ASSERT(value >= 0 && value <= 1 + 1e-12);
     RC_ASSERT(std::abs(std::accumulate(influence.begin(), influence.end(), 0.0) - 1) < 1e-12);
     if (i < features.size()) RC_ASSERT(std::abs(influence[group[i]] - 1) < 1e-9);
+  }
+  for (const auto& [i, j] : graph.planar) {
+    if (group[i] != group[j]) continue;
+    for (const double t : {0.25, 0.5, 0.9}) {
+      const Vec2 z = features[i] + t * (features[j] - features[i]);
+      RC_ASSERT(std::abs(influence_at(field, z)[group[i]] - 1) < 1e-9);
+    }
   }
 }
 

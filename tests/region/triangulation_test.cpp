@@ -9,6 +9,7 @@
 #include <rapidcheck/gtest.h>
 
 #include "applique/base/predicates.h"
+
 #include "region/contours.h"
 
 namespace applique {

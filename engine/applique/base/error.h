@@ -42,7 +42,8 @@ enum class ErrorCode {
 /// The stable name of `code`: "contour_self_crossing".
 std::string_view name_of(ErrorCode code);
 
-/// Process exit status: 1 wrong usage, 2 invalid input, 3 unsolvable job, 4 output not writable, 5 no usable device.
+/// Process exit status: 1 wrong usage, 2 invalid input, 3 unsolvable job, 4 output not writable, 5 no usable
+/// device.
 int exit_status(ErrorCode code);
 
 /// A failure of data, device or solver: a code to match on and a sentence for a person that names the

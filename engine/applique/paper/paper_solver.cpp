@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <span>
 
 #include <fmt/format.h>
 
@@ -14,7 +15,6 @@
 #include "applique/embed/align.h"
 #include "applique/paper/convex_graph.h"
 #include "applique/paper/face_regions.h"
-#include "applique/paper/feature_groups.h"
 #include "applique/paper/forward_warp.h"
 #include "applique/paper/graph_paths.h"
 #include "applique/paper/initial_map.h"
@@ -23,12 +23,13 @@
 #include "applique/paper/patch_update.h"
 #include "applique/paper/region_walk.h"
 #include "applique/patch/sheets.h"
+#include "applique/region/clusters.h"
+#include "applique/region/influence.h"
 
 namespace applique {
 namespace {
 
 constexpr int solves_per_allowed = 10;        // one strip each, where solve_decal adds many rings
-constexpr double longest_edge = 1.0 / 40;     // of the image's triangles; share of the region's diameter
 constexpr double smallest_lambda = 1.0 / 64;  // of the way to the final positions
 constexpr int most_rollbacks_in_vain = 3;     // in a row
 
@@ -114,11 +115,14 @@ class PaperSolver {
   /// What stays the same of the warp from one embedding to the next.
   void prepare_warp() {
     StageTimer stage(map_.times.warp);
-    const FeatureGroups groups = group_features(input_.region, targets_, map_.graph);
-    area_ = spread_influence(input_.region, targets_, map_.graph, groups,
-                             longest_edge * input_.region.diameter());
-    region_.image = &area_.triangulation;
-    warp_ = {targets_, {}, map_.graph.visible, groups.count, groups.group};
+    const std::vector<std::uint32_t> group = cluster_features(input_.region, targets_, map_.graph);
+    field_.emplace(input_.region, targets_, map_.graph, group);
+    region_.image = &field_->triangulation();
+    warp_ = {targets_, {}, map_.graph.visible, field_->groups(), group};
+    for (std::uint32_t point = 0; point < region_.image->points.size(); ++point) {
+      const std::span<const double> at = field_->at_point(point);
+      influence_.insert(influence_.end(), at.begin(), at.end());
+    }
     // The pins of the embedding: the two features that are furthest apart in the image.
     for (std::uint32_t i = 0; i < targets_.size(); ++i)
       for (std::uint32_t j = i + 1; j < targets_.size(); ++j)
@@ -220,9 +224,9 @@ class PaperSolver {
     }
     {
       StageTimer stage(map_.times.warp);
-      region_.plane = warp_forward(warp_, area_.triangulation.points, area_.influence);
+      region_.plane = warp_forward(warp_, region_.image->points, influence_);
       for (std::size_t k = 0; k < targets_.size(); ++k)
-        region_.plane[area_.triangulation.features[k]] = warp_.to[k];  // exactly
+        region_.plane[region_.image->features[k]] = warp_.to[k];  // exactly
     }
     StageTimer stage(map_.times.grow);
     located_ = locate_patch(seed.disc, seed.features, plane_, region_, first);
@@ -315,7 +319,8 @@ class PaperSolver {
   std::vector<Vec2> targets_;  ///< Features in the image, plane units.
   std::vector<VertexFeature> features_;
   ConvexGraph graph_;
-  InfluenceArea area_;
+  std::optional<InfluenceField> field_;  ///< Of the groups, in the image.
+  std::vector<double> influence_;        ///< [point of its triangulation * groups + group]
   std::array<std::uint32_t, 2> pins_ = {0, 0};
   std::uint32_t cover_limit_ = 1;
   ForwardWarp warp_;

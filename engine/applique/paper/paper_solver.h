@@ -13,7 +13,6 @@ namespace applique {
 ///     paper_seed      §4.2      the seed patch, from these and the bridging paths
 ///     initial_map     §4.3      its initial parameterization
 ///     lscm            §5.1      the embedding, from the last positions
-///     feature_groups  §5.1.2    groups of features and their influence
 ///     forward_warp    §5.1.1    the warp of the image region to the embedding
 ///     region_walk     §5.2.1    the set S
 ///     patch_update    §5.2      removal and insertion, merging
@@ -21,7 +20,8 @@ namespace applique {
 ///
 /// Where the paper as printed cannot be run it follows the errata of the design's §1, which each file states.
 /// The embedding is aligned with the image by a similarity before it is warped, for the paper never fixes its
-/// scale and direction (E10). The growth ends by the guards of patch_update.h, after ten times
+/// scale and direction (E10). Groups of features and their influence (§5.1.2) are those of region/clusters.h
+/// and region/influence.h (E8). The growth ends by the guards of patch_update.h, after ten times
 /// `options.max_solves` embeddings, for each adds one strip, and by giving up on rollback (warning
 /// rollback_in_vain) after three in a row that find no parameterization in one component: then removal keeps
 /// the patch together by itself, as in solve_decal.

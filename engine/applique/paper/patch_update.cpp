@@ -11,7 +11,8 @@ PatchUpdate::PatchUpdate(ImmersedDisc& disc, std::vector<PatchVertexId>& feature
 }
 
 std::size_t PatchUpdate::remove_outside(const LocatedPatch& located) {
-  const auto& [inside, image, missed] = located;
+  const auto& inside = located.inside;
+  const auto& image = located.image;
   const auto unwanted = [&](PatchFaceId q) {
     const auto& v = disc_.faces()[q].vertices;
     return !inside[v[0]] && !inside[v[1]] && !inside[v[2]] &&

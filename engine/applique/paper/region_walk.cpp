@@ -26,10 +26,10 @@ class Walker {
       if (is_wall(at)) return {came_from, false};
       const int exit = exit_edge(at, came_from, from, to);
       if (exit < 0) return {at, true};
-      const auto next = region_.image->neighbours[at][exit];
-      if (next == ImageTriangulation::none) return {at, false};
+      const std::int32_t next = region_.image->neighbours[at][exit];
+      if (next < 0) return {at, false};
       came_from = at;
-      at = next;
+      at = static_cast<std::uint32_t>(next);
     }
     return {at, false};
   }
@@ -61,7 +61,8 @@ class Walker {
     for (int k = 0; k < 3; ++k) {
       const Vec2 a = corner[(k + 1) % 3], b = corner[(k + 2) % 3];
       if (orientation(a, b, to) >= 0) continue;
-      if (came_from != at && region_.image->neighbours[at][k] == came_from) continue;
+      if (came_from != at && region_.image->neighbours[at][k] == static_cast<std::int32_t>(came_from))
+        continue;
       exit = k;
       if (orientation(from, to, a) <= 0 && orientation(from, to, b) >= 0) break;
     }
@@ -72,7 +73,7 @@ class Walker {
 };
 
 /// By point of the triangulation that is a feature, the triangles round it.
-std::vector<std::vector<std::uint32_t>> triangles_at_features(const ImageTriangulation& region) {
+std::vector<std::vector<std::uint32_t>> triangles_at_features(const RegionTriangulation& region) {
   std::vector<std::vector<std::uint32_t>> found(region.features.size());
   for (std::uint32_t t = 0; t < region.triangles.size(); ++t)
     for (std::size_t k = 0; k < region.features.size(); ++k)

@@ -4,15 +4,15 @@
 #include <optional>
 #include <vector>
 
-#include "applique/paper/image_triangulation.h"
 #include "applique/patch/immersed_disc.h"
+#include "applique/region/triangulation.h"
 
 namespace applique {
 
 /// The image region carried to the plane of the embedding: a triangulation of it, and where the forward warp
 /// puts the points. It may overlap itself: all that is asked of it is asked from a triangle on.
 struct WarpedRegion {
-  const ImageTriangulation* image;
+  const RegionTriangulation* image;
   std::vector<Vec2> plane;  ///< By point of the triangulation.
 };
 

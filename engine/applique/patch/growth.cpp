@@ -68,7 +68,7 @@ std::size_t Growth::peel(const PatchPoints& points, const IdVector<PatchVertexId
   std::vector<PatchFaceId> work;
   for (PatchFaceId q : ids<PatchFaceId>(count))
     if (disc_.alive(q) && unwanted(q)) work.push_back(q);
-  std::size_t removed = 0;
+  std::size_t removed = cover_limit_ > 1 ? peel_doubles(points) : 0;
   for (std::size_t i = 0; i < work.size(); ++i) {
     const PatchFaceId q = work[i];
     if (!disc_.alive(q) || !unwanted(q) || !disc_.removable(q)) continue;
@@ -79,6 +79,30 @@ std::size_t Growth::peel(const PatchPoints& points, const IdVector<PatchVertexId
     for (PatchFaceId across : face.neighbours)
       if (across.valid() && unwanted(across)) work.push_back(across);
   }
+  return removed;
+}
+
+std::size_t Growth::peel_doubles(const PatchPoints& points) {
+  note_cover();
+  std::vector<PatchFaceId> work;
+  const auto is_double = [&](PatchFaceId q) {
+    const auto& [f, v, neighbours] = disc_.faces()[q];
+    return disc_.cover(f) > 1 &&
+           covered_nearby(f, {points[v[0]].image, points[v[1]].image, points[v[2]].image}, points, q);
+  };
+  for (PatchFaceId q : ids<PatchFaceId>(disc_.faces().size()))
+    if (disc_.alive(q) && is_double(q)) work.push_back(q);
+  std::size_t removed = 0;
+  for (std::size_t i = 0; i < work.size(); ++i) {
+    const PatchFaceId q = work[i];
+    if (!disc_.alive(q) || !disc_.removable(q) || !is_double(q)) continue;
+    const PatchFace face = disc_.faces()[q];
+    disc_.remove(q);
+    ++removed;
+    for (PatchFaceId across : face.neighbours)
+      if (across.valid()) work.push_back(across);
+  }
+  if (removed > 0) disc_.close_slits();
   return removed;
 }
 
@@ -148,14 +172,15 @@ void Growth::note_cover() {
     if (disc_.alive(q)) over_[disc_.faces()[q].mesh_face].push_back(q);
 }
 
-bool Growth::covered_nearby(FaceId f, const std::array<Vec2, 3>& image, const PatchPoints& points) const {
+bool Growth::covered_nearby(FaceId f, const std::array<Vec2, 3>& image, const PatchPoints& points,
+                            PatchFaceId self) const {
   const auto middle = [](const std::array<Vec2, 3>& z) { return (z[0] + z[1] + z[2]) / 3.0; };
   const auto side = [](const std::array<Vec2, 3>& z) {
     return std::max({std::abs(z[1] - z[0]), std::abs(z[2] - z[1]), std::abs(z[0] - z[2])});
   };
   const auto over = over_.find(f);
   return over != over_.end() && std::any_of(over->second.begin(), over->second.end(), [&](PatchFaceId q) {
-           if (!disc_.alive(q)) return false;
+           if (q == self || !disc_.alive(q)) return false;
            const auto& v = disc_.faces()[q].vertices;
            const std::array<Vec2, 3> other = {points[v[0]].image, points[v[1]].image, points[v[2]].image};
            return std::abs(middle(image) - middle(other)) <=

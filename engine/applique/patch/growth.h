@@ -39,7 +39,8 @@ class Growth {
   /// Vertices inside the region that are connected with a feature through such vertices: the set S of §5.2.1.
   [[nodiscard]] IdVector<PatchVertexId, char> inside(const PatchPoints& points) const;
 
-  /// Removes faces that lie outside the region together with their one-rings. Returns how many.
+  /// Removes faces that lie outside the region together with their one-rings, and those that cover again what
+  /// their own sheet covers. Returns how many.
   std::size_t peel(const PatchPoints& points, const IdVector<PatchVertexId, char>& inside);
   /// Makes the margin one ring wide all round: removes every face that does not touch one that meets the
   /// region, also where it was peeled before, and completes the fans of those that do. So the patch does not
@@ -85,9 +86,10 @@ class Growth {
                                         std::span<const PatchFaceId> candidates) const;
   ImmersedDisc::Glue glue(PatchFaceId q, int k, PatchPoints& points, IdVector<PatchVertexId, char>& inside);
   [[nodiscard]] bool face_meets_region(PatchFaceId q, const PatchPoints& points) const;
-  /// Whether a patch face over f lies where the triangle a, b, c of the image does, or nearby.
-  [[nodiscard]] bool covered_nearby(FaceId f, const std::array<Vec2, 3>& image,
-                                    const PatchPoints& points) const;
+  /// Whether a patch face over f other than `self` lies where the triangle of the image does, or nearby.
+  [[nodiscard]] bool covered_nearby(FaceId f, const std::array<Vec2, 3>& image, const PatchPoints& points,
+                                    PatchFaceId self = {}) const;
+  std::size_t peel_doubles(const PatchPoints& points);
   /// Notes which patch faces lie over which surface face; needed when faces may be covered again.
   void note_cover();
   bool bridge_hole(PatchFaceId q, int k, double scale);

@@ -170,6 +170,11 @@ void ImmersedDisc::merge(PatchVertexId from, PatchVertexId into) {
   dead = {dead.mesh_vertex, {}, 0, into};
 }
 
+void ImmersedDisc::close_slits() {
+  for (PatchVertexId v : ids<PatchVertexId>(vertices_.size()))
+    if (alive(v)) zip(v);
+}
+
 std::optional<ImmersedDisc::Side> ImmersedDisc::open_side(PatchVertexId v) const {
   const Side out = outgoing_boundary(v);
   return out.face.valid() ? std::optional(out) : std::nullopt;

@@ -63,6 +63,10 @@ class ImmersedDisc {
   /// Removes a removable face.
   void remove(PatchFaceId q);
 
+  /// Joins consecutive boundary edges over one surface edge wherever that keeps the disc: what removing faces
+  /// has brought into contact.
+  void close_slits();
+
   /// Keeps q from being removed.
   void pin(PatchFaceId q) { pinned_[q] = true; }
   [[nodiscard]] bool pinned(PatchFaceId q) const { return pinned_[q]; }

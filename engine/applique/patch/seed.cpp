@@ -8,6 +8,8 @@
 namespace applique {
 namespace {
 
+constexpr double far_share = 0.1;  // of the features' extent: farther apart in the image are two sheets
+
 /// An edge of the tree on the surface, in the order in which it is walked.
 struct Strand {
   std::size_t edge;  ///< In the tree.
@@ -61,12 +63,8 @@ tl::expected<std::vector<Strand>, SeedFailure> lay_strands(const SurfaceMesh& me
 /// the image. Strands that share a feature are both shortest ways from it, and so are one sheet wherever they
 /// meet.
 std::unordered_map<FaceId, std::uint32_t> count_sheets(const SurfaceMesh& mesh,
-                                                       const std::vector<Strand>& strands) {
-  // The largest distance in one sheet: edges of the face, and share of all.
-  constexpr double far_edges = 8, far_share = 0.1;
-  double extent = 0;
-  for (const Strand& strand : strands)
-    for (const Vec2 z : strand.image) extent = std::max(extent, std::abs(z - strands[0].image[0]));
+                                                       const std::vector<Strand>& strands, double far) {
+  constexpr double far_edges = 8;
   struct Mark {
     const Strand* strand;
     Vec2 image;
@@ -81,9 +79,8 @@ std::unordered_map<FaceId, std::uint32_t> count_sheets(const SurfaceMesh& mesh,
   const auto apart = [&](const Mark& a, const Mark& b, double edge) {
     const bool adjacent = a.strand->from == b.strand->from || a.strand->from == b.strand->to ||
                           a.strand->to == b.strand->from || a.strand->to == b.strand->to;
-    return !adjacent &&
-           std::abs(a.image - b.image) >
-               std::max(far_edges * edge * std::max(a.strand->scale, b.strand->scale), far_share * extent);
+    return !adjacent && std::abs(a.image - b.image) >
+                            std::max(far_edges * edge * std::max(a.strand->scale, b.strand->scale), far);
   };
   std::unordered_map<FaceId, std::uint32_t> sheets;
   for (const auto& [f, list] : marks) {
@@ -103,9 +100,10 @@ std::unordered_map<FaceId, std::uint32_t> count_sheets(const SurfaceMesh& mesh,
 /// The disc in the making, and how often it may cover each face.
 class Thickening {
  public:
+  /// `far` as in count_sheets.
   Thickening(BridgedSurface& surface, std::span<const SeedFeature> features,
-             std::unordered_map<FaceId, std::uint32_t> sheets)
-      : features_(features), sheets_(std::move(sheets)), disc_(surface, features[0].surface.face) {
+             std::unordered_map<FaceId, std::uint32_t> sheets, double far)
+      : features_(features), sheets_(std::move(sheets)), far_(far), disc_(surface, features[0].surface.face) {
     place_new_vertices(features[0].image);
     disc_.pin(PatchFaceId(0));
   }
@@ -119,7 +117,7 @@ class Thickening {
       return disc_.mesh_vertex(v) == strand.path.front();
     });
     for (std::size_t i = 0; i < strand.path.size(); ++i) {
-      at = disc_.complete_fan(at, [&](FaceId f) { return limit(f); });
+      at = disc_.complete_fan(at, [&](FaceId f) { return limit(f, strand.image[i]); });
       place_new_vertices(strand.image[i]);
       if (i + 1 == strand.path.size()) break;
       const PatchVertexId next = disc_.neighbour_over(at, strand.path[i + 1]);
@@ -142,7 +140,9 @@ class Thickening {
       for (int k = 0; k < 3; ++k) {
         if (disc_.faces()[q].neighbours[k].valid()) continue;
         const PatchVertexId beside = disc_.faces()[q].vertices[(k + 1) % 3];
-        disc_.glue(q, k, limit(disc_.surface().neighbour(disc_.faces()[q].mesh_face, k)));
+        const FaceId beyond = disc_.surface().neighbour(disc_.faces()[q].mesh_face, k);
+        if (!beyond.valid()) continue;
+        disc_.glue(q, k, limit(beyond, image_[beside]));
         place_new_vertices(image_[beside]);
       }
   }
@@ -159,9 +159,16 @@ class Thickening {
   }
 
  private:
-  [[nodiscard]] std::uint32_t limit(FaceId f) const {
+  /// How often f may be covered when a part of the image about `image` is to go there: not again by one
+  /// sheet.
+  [[nodiscard]] std::uint32_t limit(FaceId f, Vec2 image) const {
     const auto sheets = sheets_.find(f);
-    return sheets == sheets_.end() ? 1 : sheets->second;
+    if (sheets == sheets_.end() || sheets->second == 1) return 1;
+    for (PatchFaceId q : ids<PatchFaceId>(disc_.faces().size()))
+      if (disc_.alive(q) && disc_.faces()[q].mesh_face == f &&
+          std::abs(image_[disc_.faces()[q].vertices[0]] - image) <= far_)
+        return disc_.cover(f);
+    return sheets->second;
   }
 
   void place_new_vertices(Vec2 image) { image_.resize(disc_.vertex_count(), image); }
@@ -190,6 +197,7 @@ class Thickening {
 
   std::span<const SeedFeature> features_;
   std::unordered_map<FaceId, std::uint32_t> sheets_;  // 1 where not named
+  double far_;
   ImmersedDisc disc_;
   IdVector<PatchVertexId, Vec2> image_;
 };
@@ -200,7 +208,11 @@ tl::expected<Seed, SeedFailure> build_seed(BridgedSurface& surface, std::span<co
                                            std::span<const FeaturePair> tree) {
   auto strands = lay_strands(surface.mesh(), features, tree);
   if (!strands) return tl::unexpected(strands.error());
-  Thickening thickening(surface, features, count_sheets(surface.mesh(), *strands));
+  double extent = 0;
+  for (const SeedFeature& feature : features)
+    extent = std::max(extent, std::abs(feature.image - features[0].image));
+  const double far = far_share * extent;
+  Thickening thickening(surface, features, count_sheets(surface.mesh(), *strands, far), far);
   std::vector<PatchFaceId> feature_faces(features.size());
   feature_faces[0] = PatchFaceId(0);
   for (const Strand& strand : *strands)

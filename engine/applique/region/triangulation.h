@@ -24,7 +24,7 @@ struct RegionTriangulation {
 
 struct TriangulationOptions {
   /// Plane units; 0: no points are added. Otherwise no edge is longer, and no triangle's circumscribed circle
-  /// is wider, except where the contour comes within a few per cent of that of itself.
+  /// is wider, except where edges shorter than an eighth of that hem the triangle in.
   double max_edge = 0;
 };
 
