@@ -240,8 +240,8 @@ class Solver {
 
   void find_influence(const ImmersedDisc& disc, const Growth& growth) {
     if (groups_.count > 1)
-      influence_ =
-          influence_on_patch(disc, points_, input_.region, *influence_field_, growth.feature_faces());
+      influence_ = influence_on_patch(disc, points_, input_.region, *influence_field_, growth.feature_faces(),
+                                      groups_.of);
   }
 
   [[nodiscard]] std::string feature_range() const {

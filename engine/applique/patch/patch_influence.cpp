@@ -19,7 +19,8 @@ void for_each_neighbour(const ImmersedDisc& disc, PatchVertexId v, Visit visit) 
 
 std::vector<double> influence_on_patch(const ImmersedDisc& disc, const PatchPoints& points,
                                        const Region& region, const InfluenceField& field,
-                                       std::span<const PatchFaceId> feature_faces) {
+                                       std::span<const PatchFaceId> feature_faces,
+                                       std::span<const std::uint32_t> group) {
   const std::uint32_t groups = field.groups();
   std::vector<double> influence(points.size() * groups, 0);
   const auto of = [&](PatchVertexId v) { return std::span(influence).subspan(v.value * groups, groups); };
@@ -32,9 +33,13 @@ std::vector<double> influence_on_patch(const ImmersedDisc& disc, const PatchPoin
     field.at(points[v].image, of(v));
     queue.push_back(v);
   };
-  for (PatchFaceId q : feature_faces)
-    for (PatchVertexId v : disc.faces()[q].vertices)
-      if (!known[v]) read_field(v);
+  for (std::size_t k = 0; k < feature_faces.size(); ++k)
+    for (PatchVertexId v : disc.faces()[feature_faces[k]].vertices) {
+      if (known[v]) continue;  // by a feature next to this one
+      read_field(v);
+      std::fill(of(v).begin(), of(v).end(), 0.0);
+      of(v)[group[k]] = 1;
+    }
   for (std::size_t i = 0; i < queue.size(); ++i)
     for_each_neighbour(disc, queue[i], [&](PatchVertexId w) {
       if (!known[w] && region.contains(points[w].image) &&

@@ -16,6 +16,7 @@ namespace applique {
 /// would get from the field may belong to another sheet. Ids are compact.
 std::vector<double> influence_on_patch(const ImmersedDisc& disc, const PatchPoints& points,
                                        const Region& region, const InfluenceField& field,
-                                       std::span<const PatchFaceId> feature_faces);
+                                       std::span<const PatchFaceId> feature_faces,
+                                       std::span<const std::uint32_t> group);
 
 }  // namespace applique
