@@ -23,7 +23,7 @@ struct SolveTrace {
   };
   /// The surface vertices passed, by FeatureGraph::tree; in the paper's method by ConvexGraph::edges.
   std::vector<std::vector<VertexId>> paths;
-  std::vector<Step> steps;                   ///< steps[0] is the seed.
+  std::vector<Step> steps;  ///< steps[0] is the seed.
 };
 
 }  // namespace applique

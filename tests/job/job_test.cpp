@@ -172,7 +172,9 @@ INSTANTIATE_TEST_SUITE_P(
         Fault{"/decals/0/blend", "\"add\"",
               "job.json: /decals/0/blend: found \"add\", expected \"normal\", \"multiply\" or \"screen\""},
         Fault{"/decals/0/method", "\"lscm\"",
-              "job.json: /decals/0/method: found \"lscm\", expected \"applique\""},
+              "job.json: /decals/0/method: found \"lscm\", expected \"applique\", or \"paper\": the paper's "
+              "own "
+              "algorithm, for comparison"},
         Fault{
             "/decals/0/size", "0",
             "job.json: /decals/0/size: found 0, expected a number over 0, the image's width in scene units"},

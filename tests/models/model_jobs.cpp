@@ -1,7 +1,9 @@
 #include "models/model_jobs.h"
 
+#include <array>
 #include <cmath>
 #include <fstream>
+#include <numbers>
 
 #include <nlohmann/json.hpp>
 
@@ -70,6 +72,48 @@ json helmet_features() {
   return features;
 }
 
+/// Rays inwards from a helix round an upright axis, starting at the back; later is on top.
+class Helix {
+ public:
+  Helix(std::array<double, 2> axis, double radius, double turns)
+      : axis_(axis), radius_(radius), turns_(turns) {}
+  /// `t` along the helix, 0 to 1.
+  [[nodiscard]] json feature(double x, double y, double t, double height) const {
+    const double angle = std::numbers::pi * (1 + 2 * turns_ * t);
+    json pin = ray(x, y, {axis_[0] + radius_ * std::sin(angle), height, axis_[1] + radius_ * std::cos(angle)},
+                   {-std::sin(angle), 0, -std::cos(angle)});
+    pin["depth"] = t;
+    return pin;
+  }
+
+ private:
+  std::array<double, 2> axis_;  // x and z
+  double radius_, turns_;
+};
+
+/// The belt, 2000 x 200 pixels, by its middle line.
+json belt_features(const Helix& helix, double low, double high, int pieces) {
+  json features;
+  for (int k = 0; k <= pieces; ++k) {
+    const double t = double(k) / pieces;
+    features.push_back(helix.feature(40 + 1920 * t, 100, t, low + (high - low) * t));
+  }
+  return features;
+}
+
+/// The snake, 1024 x 512 pixels, round the wrist: its waves stay waves.
+json snake_features() {
+  json features;
+  for (const auto& [x, y] :
+       {std::pair(105.9, 214.2), std::pair(224.0, 106.0), std::pair(368.0, 256.0), std::pair(512.0, 406.0),
+        std::pair(656.0, 256.0), std::pair(800.0, 106.0), std::pair(918.1, 214.2)}) {
+    const double t = (x - 105.9) / 812.2;
+    features.push_back(
+        Helix({-0.03, 0.05}, 0.25, 1.3).feature(x, y, t, 0.14 + 0.00054 * (256 - y) + 0.05 * t));
+  }
+  return features;
+}
+
 }  // namespace
 
 std::vector<ModelJob> write_model_jobs(const std::filesystem::path& data,
@@ -77,9 +121,11 @@ std::vector<ModelJob> write_model_jobs(const std::filesystem::path& data,
   std::vector<ModelJob> jobs;
   const auto add = [&](const std::string& name, const std::string& model, const std::string& image,
                        json features, json decal = json::object(), bool surface_ends = false) {
-    if (!std::filesystem::exists(data / model) || !std::filesystem::exists(data / image)) return;
+    // Images of our own are in the folder.
+    const auto path = std::filesystem::exists(folder / image) ? folder / image : data / image;
+    if (!std::filesystem::exists(data / model) || !std::filesystem::exists(path)) return;
     decal["name"] = name;
-    decal["image"] = (data / image).string();
+    decal["image"] = path.string();
     decal["features"] = std::move(features);
     const json job = {{"version", 1}, {"model", (data / model).string()}, {"decals", {decal}}};
     jobs.push_back({name, folder / (name + ".json"), surface_ends});
@@ -95,6 +141,14 @@ std::vector<ModelJob> write_model_jobs(const std::filesystem::path& data,
   add("monkey-star", "gltf/Suzanne/Suzanne.gltf", "images/noto/noto_u2b50.png", forehead_features());
   add("helmet-star", "gltf/FlightHelmet/FlightHelmet.gltf", "images/noto/noto_u2b50.png", helmet_features(),
       {{"materials", {"LeatherPartsMat"}}});
+  // These lie over themselves.
+  add("neck-ribbon", "gltf/LeePerrySmith/LeePerrySmith.glb", "belt.png",
+      belt_features(Helix({-0.1, -0.55}, 2.4, 1.3), -1.45, -0.95, 12),
+      {{"overlap", "allow"}, {"region", {{"contour", {{0, 55}, {2000, 55}, {2000, 145}, {0, 145}}}}}});
+  add("waist-belt", "derived/gltf/human_neutral.glb", "belt.png",
+      belt_features(Helix({0, 0}, 0.4, 1.25), 1.03, 1.1, 8), {{"overlap", "allow"}});
+  add("wrist-snake", "derived/gltf/hand_closed.glb", "snake.png", snake_features(),
+      {{"overlap", "allow"}, {"output", "overlay"}});
   return jobs;
 }
 

@@ -32,7 +32,7 @@ class Models : public GpuTest {
     GpuTest::SetUpTestSuite();
     folder = std::filesystem::temp_directory_path() / ("applique-models-" + std::to_string(getpid()));
     std::filesystem::create_directories(folder);
-    const std::string command = std::string(APPLIQUE_ASSETS_COMMAND) + " '" + folder.string() + "'";
+    const std::string command = std::string(APPLIQUE_ASSETS_COMMAND) + " '" + folder.string() + "' --gallery";
     ASSERT_EQ(std::system(command.c_str()), 0);  // NOLINT: a command of our own
     jobs = {{"bust-mask", folder / "bust-mask.json", false},
             {"bust-emblem", folder / "bust-emblem.json", false},

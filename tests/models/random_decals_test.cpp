@@ -1,12 +1,12 @@
 // Random decals on a scanned head: nostrils, ears, lips, and a neck that ends.
 
+#include "support/random_decals.h"
+
 #include <cstdlib>
 #include <filesystem>
 
 #include <gtest/gtest.h>
 #include <rapidcheck.h>
-
-#include "support/random_decals.h"
 
 #include "model.h"
 
