@@ -20,7 +20,7 @@ TEST(RandomDecalsOnModels, AreSolvedOrTurnedDownWithAReason) {
   ASSERT_TRUE(model) << model.error().message;
   const ModelSurface surface = build_surface(*model, {}, {});
   const SurfaceQuery query(surface.mesh);
-  const random_decals::Ground ground{"LeePerrySmith", &surface.mesh, &query, 0.25 * model->diagonal()};
+  const random_decals::Ground ground{"LeePerrySmith", &surface.mesh, &query, 0.15 * model->diagonal()};
   setenv("RC_PARAMS", "seed=20261124 max_success=100", 0);
   random_decals::Tally tally;
   EXPECT_TRUE(rc::check("random decals on a head", [&] {

@@ -11,6 +11,7 @@ namespace {
 
 constexpr double size = 512;
 constexpr ImageFrame frame{size, size};
+constexpr double facing = 0.35;  // cosine to the viewer of a surface that one would pin something to
 
 double uniform(std::mt19937& random, double low, double high) {
   return std::uniform_real_distribution<double>(low, high)(random);
@@ -76,14 +77,20 @@ Region random_region(std::mt19937& random) {
   }
 }
 
+Vec3 normal_at(const SurfaceMesh& mesh, FaceId face) {
+  const auto corners = mesh.corners(face);
+  return (corners[1] - corners[0]).cross(corners[2] - corners[0]).normalized();
+}
+
 }  // namespace
 
 DecalInput random_decal(const Ground& ground, std::mt19937& random) {
   DecalInput input{"random", random_region(random), {}, {}};
-  // Seen from a random side, as a person would pick the places: what a ray meets first.
+  // Seen from a random side, as a person would pick the places: what a ray meets first and faces the viewer.
   const SurfaceMesh& mesh = *ground.mesh;
-  const auto corners = mesh.corners(FaceId(random() % mesh.faces.size()));
-  const Vec3 normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]).normalized();
+  const FaceId face(random() % mesh.faces.size());
+  const auto corners = mesh.corners(face);
+  const Vec3 normal = normal_at(mesh, face);
   const Vec3 eye = (corners[0] + corners[1] + corners[2]) / 3 + 4 * ground.size * normal;
   const double turn = uniform(random, 0, 2 * std::numbers::pi);
   const Vec3 x = Eigen::AngleAxisd(turn, normal) * normal.unitOrthogonal(), y = normal.cross(x);
@@ -100,7 +107,7 @@ DecalInput random_decal(const Ground& ground, std::mt19937& random) {
       continue;
     const Vec2 at = 0.5 * width * z + pull * Vec2(uniform(random, -1, 1), uniform(random, -1, 1));
     const auto place = ground.query->first_hit(eye + at.real() * x + at.imag() * y, -normal);
-    if (!place) continue;
+    if (!place || normal_at(mesh, place->face).dot(normal) < facing) continue;
     places.push_back(z);
     input.features.push_back({pixel, *place, 0});
   }

@@ -42,7 +42,13 @@ class Builder {
         if (!seed_.features[end].valid()) APPLIQUE_CHECK(lay_bridge(bridge, k, end));
       }
     }
-    APPLIQUE_ASSERT(queue_.size() == features_.size());
+    for (std::uint32_t k = 0; k < features_.size(); ++k)
+      if (!seed_.features[k].valid())
+        return fail(
+            ErrorCode::not_solved,
+            fmt::format("decal '{}': the faces and paths of the graph do not reach {} on the surface: {}",
+                        input_.name, feature_name(input_, k),
+                        ask_for_feature(input_, 0.5 * (features_[0].target + features_[k].target))));
     return compacted();
   }
 
