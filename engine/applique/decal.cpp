@@ -102,8 +102,9 @@ std::vector<Vec2> warp_all(const Warp& warp, const std::vector<Vec2>& places,
 /// One decal in the making: the state that the growth's iterations share.
 class Solver {
  public:
-  Solver(const SurfaceMesh& surface, const DecalInput& input, const SolveOptions& options)
-      : surface_(surface), input_(input), options_(options), bridged_(surface) {
+  /// `grouping`: whether features may move the image in groups.
+  Solver(const SurfaceMesh& surface, const DecalInput& input, const SolveOptions& options, bool grouping)
+      : surface_(surface), input_(input), options_(options), grouping_(grouping), bridged_(surface) {
     for (const Feature& feature : input.features)
       targets_.push_back(input.region.frame().to_plane(feature.image));
   }
@@ -146,7 +147,7 @@ class Solver {
     for (std::size_t k = 0; k < targets_.size(); ++k)
       features.push_back({input_.features[k].surface, targets_[k]});
     auto seed = build_seed(bridged_, features, map_.graph.tree);
-    if (seed && options_.trace != nullptr) options_.trace->paths = seed->paths;
+    if (seed && options_.trace != nullptr) *options_.trace = {seed->paths, {}};
     if (seed) return std::move(*seed);
     const auto [i, j] = seed.error().disconnected;
     return fail(ErrorCode::features_disconnected,
@@ -203,6 +204,7 @@ class Solver {
   /// fewer folds). The first embeddings are of thin patches and may mislead; later on there is no way back,
   /// so that the growth ends.
   void choose_groups(const ImmersedDisc& disc, const Growth& growth, const std::vector<Vec2>& features) {
+    if (!grouping_) return;
     const bool graph = growth.cover_limit() > 1 && graph_overlaps(features, map_.graph);
     if (!graph && !overlaps_in_plane(disc, points_, input_.region)) {
       if (map_.solves <= trial_solves) groups_ = {};
@@ -502,6 +504,7 @@ class Solver {
   const SurfaceMesh& surface_;
   const DecalInput& input_;
   const SolveOptions& options_;
+  bool grouping_;
   BridgedSurface bridged_;
   std::vector<Vec2> targets_;  ///< Features in the image, plane units.
   PatchPoints points_;
@@ -530,7 +533,14 @@ std::vector<double> DecalMap::influence_at(const std::array<PatchVertexId, 3>& c
 Result<DecalMap> solve_decal(const SurfaceMesh& surface, const DecalInput& input,
                              const SolveOptions& options) {
   if (options.method == Method::paper) return solve_decal_as_paper(surface, input, options);
-  return Solver(surface, input, options).run();
+  Result<DecalMap> map = Solver(surface, input, options, true).run();
+  const auto folds = [](const DecalMap& solved) {
+    return solved.quality.flipped_plane + solved.quality.flipped_image;
+  };
+  if (!map || map->groups == 1 || map->sheets > 1 || folds(*map) == 0) return map;
+  // Parts that only touch in the plane, not on the surface: without groups it may go with fewer folds.
+  Result<DecalMap> ungrouped = Solver(surface, input, options, false).run();
+  return ungrouped && folds(*ungrouped) < folds(*map) ? std::move(ungrouped) : std::move(map);
 }
 
 }  // namespace applique

@@ -6,6 +6,8 @@
 #include <numbers>
 #include <optional>
 
+#include <rapidcheck.h>
+
 namespace applique::random_decals {
 namespace {
 
@@ -83,6 +85,10 @@ Vec3 normal_at(const SurfaceMesh& mesh, FaceId face) {
 }
 
 }  // namespace
+
+std::uint32_t any_seed() {
+  return *rc::gen::noShrink(rc::gen::resize(rc::kNominalSize, rc::gen::arbitrary<std::uint32_t>()));
+}
 
 DecalInput random_decal(const Ground& ground, std::mt19937& random) {
   DecalInput input{"random", random_region(random), {}, {}};

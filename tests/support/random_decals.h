@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <map>
 #include <random>
 #include <string>
@@ -16,6 +17,9 @@ struct Ground {
   const SurfaceQuery* query;
   double size;  ///< Decals are 0.2 to 1 times as wide, scene units.
 };
+
+/// A seed from RapidCheck, any at any stage of its run.
+std::uint32_t any_seed();
 
 /// A random region (star-shaped, a bent strip, or a block with notches) with one to nine random features,
 /// laid on the ground about a random point by its tangent plane and pulled about.
