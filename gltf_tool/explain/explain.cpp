@@ -138,18 +138,21 @@ class Picture {
     draw_pairs_panel(panels[2], graph.planar, graph.tree, palette::blue);
   }
 
-  /// The tree's paths on the surface, from feature to feature.
+  /// The solver's paths on the surface, from feature to feature.
   [[nodiscard]] SurfaceLines paths_on_surface(double width) const {
     SurfaceLines lines = {{}, width, palette::blue};
     const SurfaceMesh& mesh = decal_.surface->mesh;
     for (std::size_t e = 0; e < decal_.trace.paths.size(); ++e) {
       std::vector<Vec3> line;
       for (const VertexId v : decal_.trace.paths[e]) line.push_back(mesh.positions[v]);
-      Vec3 from = position_of(mesh, decal_.features[decal_.map.graph.tree[e][0]].surface);
-      Vec3 to = position_of(mesh, decal_.features[decal_.map.graph.tree[e][1]].surface);
-      if ((line.front() - from).norm() > (line.front() - to).norm()) std::swap(from, to);
-      line.insert(line.begin(), from);
-      line.push_back(to);
+      // The paper's paths, of all its graph's edges, run from vertex to vertex; ours from a place in a face.
+      if (decal_.job.method == Method::applique) {
+        Vec3 from = position_of(mesh, decal_.features[decal_.map.graph.tree[e][0]].surface);
+        Vec3 to = position_of(mesh, decal_.features[decal_.map.graph.tree[e][1]].surface);
+        if ((line.front() - from).norm() > (line.front() - to).norm()) std::swap(from, to);
+        line.insert(line.begin(), from);
+        line.push_back(to);
+      }
       lines.lines.push_back(std::move(line));
     }
     return lines;

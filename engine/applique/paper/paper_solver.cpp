@@ -241,6 +241,9 @@ class PaperSolver {
     step.image = located_.image;
     step.inside = located_.inside;
     step.features = warp_.to;
+    // The polygon's vertices are the first points of the triangulation.
+    const auto corners = static_cast<std::ptrdiff_t>(input_.region.polygon().size());
+    step.contour.assign(region_.plane.begin(), region_.plane.begin() + corners);
     step.lambda = lambda;
     options_.trace->steps.push_back(std::move(step));
   }
