@@ -29,6 +29,10 @@ class ExplainTest : public testing::Test {
     Image image = make_image(64, 64, {0x8000, 0x8000, 0x8000, 0xffff});
     image.channels = 3;
     write_png(folder_ / "image.png", image);
+    write_job("applique");
+  }
+
+  void write_job(const std::string& method) {
     const auto feature = [](double x, double y, double dx) {
       return json{{"image", {x, y}}, {"position", {(x - 32) / 64 + dx, (32 - y) / 64, 0}}};
     };
@@ -39,6 +43,7 @@ class ExplainTest : public testing::Test {
          {"decals",
           json::array({{{"name", "crest"},
                         {"image", "image.png"},
+                        {"method", method},
                         {"features", json::array({feature(10, 10, 0), feature(54, 10, 0), feature(54, 54, 0),
                                                   feature(10, 54, 0), feature(32, 32, 0.08)})}}})}});
   }
@@ -114,6 +119,12 @@ TEST_F(ExplainTest, DrawsThePatchOnTheModelAndFlat) {
 TEST_F(ExplainTest, StepsOfTheGrowthDiffer) {
   const Image first = explain("growth --step 0"), second = explain("growth --step 1");
   EXPECT_NE(first.rgba, second.rgba);
+}
+
+TEST_F(ExplainTest, DrawsThePapersMethodToo) {
+  write_job("paper");
+  for (const char* stage : {"region", "graph", "paths", "seed", "growth", "warp", "influence", "patch"})
+    EXPECT_LT(share_of(explain(stage), palette::white), 0.99) << stage;
 }
 
 TEST_F(ExplainTest, TurnsDownWhatIsNotThere) {
