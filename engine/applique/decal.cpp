@@ -28,14 +28,9 @@ constexpr double most_patch_area = 4;         // of a patch that may cover more,
 constexpr double linear_tolerance_px = 0.02;  // §5.1 of the design
 constexpr double least_coverage = 0.01;       // below it the result is of no use
 constexpr double few_changes = 0.03;          // of a patch's faces
-#ifdef APPLIQUE_CHECK_INVARIANTS
-constexpr bool always_check_patch = true;
-#else
-constexpr bool always_check_patch = false;
-#endif
-constexpr int trial_solves = 6;     // after them, groups stay
-constexpr int most_refreshes = 8;   // of the vertices' influence
-constexpr double refreshed = 1e-5;  // of the region's diameter: what a last refresh moves
+constexpr int trial_solves = 6;               // after them, groups stay
+constexpr int most_refreshes = 8;             // of the vertices' influence
+constexpr double refreshed = 1e-5;            // of the region's diameter: what a last refresh moves
 
 /// The similarity that gives a lone feature's neighbourhood the wanted size and direction (§3.3 of the
 /// design).
@@ -104,10 +99,12 @@ class Solver {
  public:
   /// `grouping`: whether features may move the image in groups.
   Solver(const SurfaceMesh& surface, const DecalInput& input, const SolveOptions& options, bool grouping)
-      : surface_(surface), input_(input), options_(options), grouping_(grouping), bridged_(surface) {
-    for (const Feature& feature : input.features)
-      targets_.push_back(input.region.frame().to_plane(feature.image));
-  }
+      : surface_(surface),
+        input_(input),
+        options_(options),
+        grouping_(grouping),
+        bridged_(surface),
+        targets_(targets_of(input)) {}
 
   Result<DecalMap> run() {
     double total = 0;
@@ -207,14 +204,18 @@ class Solver {
     if (!grouping_) return;
     const bool graph = growth.cover_limit() > 1 && graph_overlaps(features, map_.graph);
     if (!graph && !overlaps_in_plane(disc, points_, input_.region)) {
-      if (map_.solves <= trial_solves) groups_ = {};
+      if (map_.solves <= trial_solves) {
+        groups_ = {};
+        field_groups_.clear();
+      }
       return;
     }
     if (groups_.count > 1 && map_.solves > trial_solves) return;
     if (clusters_.empty()) clusters_ = cluster_features(input_.region, targets_, map_.graph);
     const bool one = std::all_of(clusters_.begin(), clusters_.end(), [](std::uint32_t g) { return g == 0; });
     const auto groups = cut_overlapping_groups(clusters_, features, map_.graph, one && !graph);
-    if (groups == groups_.of) return;
+    if (groups == field_groups_) return;
+    field_groups_ = groups;
     influence_field_.emplace(input_.region, targets_, map_.graph, groups);
     groups_ = groups_of(*influence_field_, groups);
   }
@@ -319,7 +320,7 @@ class Solver {
         }
       }
       growth.compact(points_);
-      APPLIQUE_ASSERT(!(always_check_patch || options_.check_patch) || disc.broken_invariant().empty());
+      APPLIQUE_ASSERT(!checks_patch(options_) || disc.broken_invariant().empty());
     }
     map_.status = growth.coverage(points_);
     return {};
@@ -512,6 +513,7 @@ class Solver {
   bool mirrored_ = false;  ///< By the last embedding, the features run the other way round on the surface.
   std::vector<std::uint32_t> clusters_;  ///< Group by feature, as the image has them; once asked for.
   FeatureGroups groups_;
+  std::vector<std::uint32_t> field_groups_;        ///< What influence_field_ was made of, be it one group.
   std::optional<InfluenceField> influence_field_;  ///< Of groups_, while there are several.
   std::vector<double> influence_;                  ///< [vertex * groups + group], while there are several.
   EmbeddingRung rung_ = EmbeddingRung::conformal;

@@ -25,6 +25,22 @@ std::string feature_name(const DecalInput& input, std::size_t k) {
                      input.features[k].image.y);
 }
 
+bool checks_patch(const SolveOptions& options) {
+#ifdef APPLIQUE_CHECK_INVARIANTS
+  static_cast<void>(options);
+  return true;
+#else
+  return options.check_patch;
+#endif
+}
+
+std::vector<Vec2> targets_of(const DecalInput& input) {
+  std::vector<Vec2> targets;
+  for (const Feature& feature : input.features)
+    targets.push_back(input.region.frame().to_plane(feature.image));
+  return targets;
+}
+
 Result<void> check_input(const SurfaceMesh& surface, const DecalInput& input,
                          const std::vector<Vec2>& targets, Overlap overlap) {
   const std::string prefix = fmt::format("decal '{}': ", input.name);

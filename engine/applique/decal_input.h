@@ -10,6 +10,12 @@ namespace applique {
 /// How messages call feature k: "feature 3 at (120.5, 88.0)".
 std::string feature_name(const DecalInput& input, std::size_t k);
 
+/// Whether to check the patch's invariants: always in builds that are for it (APPLIQUE_CHECK_INVARIANTS).
+bool checks_patch(const SolveOptions& options);
+
+/// The features' image points in the plane.
+std::vector<Vec2> targets_of(const DecalInput& input);
+
 /// What every method asks of its input. `targets`: the features' image points in the plane. Features may
 /// share a spot of the surface, not of the image, where the decal may lie over itself. Errors, each naming
 /// the decal and the features: feature_place_invalid, feature_outside_region, features_coincide,

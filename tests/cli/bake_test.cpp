@@ -245,6 +245,31 @@ TEST_F(BakeTest, LaterDecalsLieOverEarlierOnes) {
   expect_quarters(*image, &texture_);
 }
 
+/// Three decals, two on one material and one over it on another, in one run: each material gets what lies on
+/// it.
+TEST_F(BakeTest, SeveralDecalsShareTexturesAndKeepTheirOwn) {
+  json job = job_at(-2, 0);
+  write_png(folder_ / "black.png", make_image(image_size, image_size, {0, 0, 0, 0xffff}));
+  json under = job["decals"][0];
+  under["name"] = "under";
+  under["image"] = "black.png";
+  json elsewhere = job_at(0, -6)["decals"][0];
+  elsewhere["name"] = "elsewhere";
+  job["decals"] = {under, job["decals"][0], elsewhere};
+  ASSERT_EQ(bake(job).status, 0);
+  const json report = valid_report();
+  EXPECT_EQ(report["decals"].size(), 3U);
+  EXPECT_EQ(report["textures"].size(), 2U);
+  const auto model = load_model(folder_ / "out.glb");
+  ASSERT_TRUE(model) << model.error().message;
+  const auto texture_of = [&](const char* name) {
+    return load_model_image(*model, *model->materials[*part_named(*model, name).material].image).value();
+  };
+  expect_quarters(texture_of("Left"), &texture_);
+  const Image plain = make_image(texture_size, texture_size, {188 * 257, 137 * 257, 0xffff, 0xffff});
+  expect_quarters(texture_of("Plain"), &plain);
+}
+
 TEST_F(BakeTest, ClippedCoverageIsWarnedOf) {
   json job = job_at(-2.75, 0);  // a quarter of the image hangs over the plane's edge
   ASSERT_EQ(bake(job).status, 0);

@@ -54,6 +54,7 @@ TEST(RandomDecals, ByThePaperAreSolvedOrTurnedDownWithAReason) {
       for (Feature& feature : input.features) feature.surface.barycentric = {1, 0, 0};
       SolveOptions options;
       options.method = Method::paper;
+      options.check_patch = true;
       const std::string outcome = random_decals::outcome(solve_decal(shape.mesh, input, options));
       tally.add(shape.name, outcome);
       EXPECT_NE(outcome, "") << shape.name << " " << seed;

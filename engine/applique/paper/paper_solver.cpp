@@ -36,10 +36,7 @@ constexpr int most_rollbacks_in_vain = 3;     // in a row
 class PaperSolver {
  public:
   PaperSolver(const SurfaceMesh& surface, const DecalInput& input, const SolveOptions& options)
-      : surface_(surface), bridged_(surface), input_(input), options_(options) {
-    for (const Feature& feature : input.features)
-      targets_.push_back(input.region.frame().to_plane(feature.image));
-  }
+      : surface_(surface), bridged_(surface), input_(input), options_(options), targets_(targets_of(input)) {}
 
   Result<DecalMap> run() {
     double total = 0;
@@ -167,9 +164,7 @@ class PaperSolver {
                                             : update.widen_bridges(located_, plane_);  // (f)
       if (lambda == 1 && removed + added == 0) break;
       update.compact(plane_);
-#ifdef APPLIQUE_CHECK_INVARIANTS
-      APPLIQUE_ASSERT(seed.disc.broken_invariant().empty());
-#endif
+      APPLIQUE_ASSERT(!checks_patch(options_) || seed.disc.broken_invariant().empty());
     }
     return {};
   }
