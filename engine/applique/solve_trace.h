@@ -21,8 +21,9 @@ struct SolveTrace {
     std::vector<Vec2> contour;  ///< The region's contour carried into the plane, its edges divided.
     double lambda = 1;  ///< Paper's method: less than 1 where it rolled back, the share of the way it took.
   };
-  /// The surface vertices passed, by FeatureGraph::tree; in the paper's method by ConvexGraph::edges.
-  std::vector<std::vector<VertexId>> paths;
+  /// From feature to feature along the surface, scene units: one for each edge of FeatureGraph::tree, or, in
+  /// the paper's method, of its own graph.
+  std::vector<std::vector<Vec3>> paths;
   std::vector<Step> steps;  ///< steps[0] is the seed.
 };
 

@@ -104,6 +104,12 @@ class Picture {
     draw_features(canvas_, targets_, view, pen);
   }
 
+  /// The groups that move the image; where it moves as one, those that the region would have.
+  [[nodiscard]] std::vector<std::uint32_t> groups() const {
+    return decal_.map.groups > 1 ? decal_.map.feature_groups
+                                 : cluster_features(decal_.region, targets_, decal_.map.graph);
+  }
+
   void draw_region() {
     const auto panels = boxes(4);
     const Pen pen = pen_for(panels[0]);
@@ -113,8 +119,7 @@ class Picture {
     draw_pairs_panel(panels[1], graph.visible, {}, palette::ink);
     const RegionTriangulation mesh = triangulate_region(decal_.region, targets_, graph.planar);
     draw_features(canvas_, targets_, draw_mesh(mesh, panels[2]), pen);
-    draw_features(canvas_, targets_, draw_mesh(mesh, panels[3]), pen,
-                  cluster_features(decal_.region, targets_, graph));
+    draw_features(canvas_, targets_, draw_mesh(mesh, panels[3]), pen, groups());
   }
 
   /// A triangulation of the region with its contour; returns where it is.
@@ -140,22 +145,7 @@ class Picture {
 
   /// The solver's paths on the surface, from feature to feature.
   [[nodiscard]] SurfaceLines paths_on_surface(double width) const {
-    SurfaceLines lines = {{}, width, palette::blue};
-    const SurfaceMesh& mesh = decal_.surface->mesh;
-    for (std::size_t e = 0; e < decal_.trace.paths.size(); ++e) {
-      std::vector<Vec3> line;
-      for (const VertexId v : decal_.trace.paths[e]) line.push_back(mesh.positions[v]);
-      // The paper's paths, of all its graph's edges, run from vertex to vertex; ours from a place in a face.
-      if (decal_.job.method == Method::applique) {
-        Vec3 from = position_of(mesh, decal_.features[decal_.map.graph.tree[e][0]].surface);
-        Vec3 to = position_of(mesh, decal_.features[decal_.map.graph.tree[e][1]].surface);
-        if ((line.front() - from).norm() > (line.front() - to).norm()) std::swap(from, to);
-        line.insert(line.begin(), from);
-        line.push_back(to);
-      }
-      lines.lines.push_back(std::move(line));
-    }
-    return lines;
+    return {decal_.trace.paths, width, palette::blue};
   }
 
   Result<void> draw_on_model(const Box& box, const ModelDrawing& drawing) {
@@ -286,7 +276,7 @@ class Picture {
   /// paper's segments.
   void draw_influence() {
     const auto panels = boxes(2);
-    const auto groups = cluster_features(decal_.region, targets_, decal_.map.graph);
+    const std::vector<std::uint32_t> groups = this->groups();
     const InfluenceField field(decal_.region, targets_, decal_.map.graph, groups);
     const RegionTriangulation& mesh = field.triangulation();
     const auto labels = field.segment_labels();

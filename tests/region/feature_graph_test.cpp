@@ -13,43 +13,12 @@
 #include "applique/base/predicates.h"
 #include "applique/region/geodesic.h"
 
+#include "region/contours.h"
+
 namespace applique {
 namespace {
 
-constexpr ImageFrame frame = {256, 256};
-
-Region make_region(const std::vector<Pixel>& contour) {
-  auto region = Region::from_contour(contour, frame);
-  EXPECT_TRUE(region) << region.error().message;
-  return std::move(*region);
-}
-
-std::vector<Pixel> star_contour(int vertices, unsigned seed) {
-  std::mt19937 random(seed);
-  std::uniform_real_distribution<double> radius(20, 120);
-  std::vector<Pixel> contour;
-  for (int i = 0; i < vertices; ++i) {
-    const double angle = 2 * std::numbers::pi * i / vertices, r = radius(random);
-    contour.push_back({128 + r * std::cos(angle), 128 + r * std::sin(angle)});
-  }
-  return contour;
-}
-
-std::vector<Vec2> points_in(const Region& region, std::size_t count, unsigned seed) {
-  std::mt19937 random(seed);
-  std::uniform_real_distribution<double> x(-1, 1);
-  std::vector<Vec2> points;
-  while (points.size() < count) {
-    const Vec2 z(x(random), x(random));
-    if (region.contains(z)) points.push_back(z);
-  }
-  return points;
-}
-
 const std::vector<Pixel> square = {{0, 0}, {256, 0}, {256, 256}, {0, 256}};
-// A U whose arms see each other only round the base.
-const std::vector<Pixel> horseshoe = {{0, 0},   {20, 0},  {20, 230},  {236, 230},
-                                      {236, 0}, {256, 0}, {256, 256}, {0, 256}};
 
 TEST(FeatureGraph, SquareOfFeatures) {
   const FeatureGraph graph =
@@ -86,7 +55,7 @@ TEST(FeatureGraph, TakesTheShortDiagonal) {
 
 TEST(FeatureGraph, WhatSeesNothingIsJoinedTheShortestWayInside) {
   const Region region = make_region(horseshoe);
-  const auto at = [&](double x, double y) { return frame.to_plane({x, y}); };
+  const auto at = [&](double x, double y) { return contour_frame.to_plane({x, y}); };
   // Two in the left arm, two in the right. Straight across 0 and 2 are nearest, by the base 1 and 3.
   const FeatureGraph graph = build_feature_graph(region, {at(15, 20), at(5, 200), at(241, 20), at(251, 200)});
   EXPECT_EQ(graph.visible, (std::vector<FeaturePair>{{0, 1}, {2, 3}}));
@@ -119,7 +88,7 @@ double geodesic_by_definition(const Region& region, Vec2 a, Vec2 b) {
 }
 
 RC_GTEST_PROP(InnerGeodesics, AreShortest, ()) {
-  const Region region = make_region(star_contour(*rc::gen::inRange(3, 40), *rc::gen::arbitrary<unsigned>()));
+  const Region region = random_star(*rc::gen::inRange(3, 40), *rc::gen::arbitrary<unsigned>());
   std::vector<Vec2> points = points_in(region, 5, *rc::gen::arbitrary<unsigned>());
   points.push_back(region.polygon()[0]);
   points.push_back(region.polygon()[2]);
@@ -137,7 +106,7 @@ RC_GTEST_PROP(InnerGeodesics, AreShortest, ()) {
 }
 
 RC_GTEST_PROP(FeatureGraph, Properties, ()) {
-  const Region region = make_region(star_contour(*rc::gen::inRange(3, 60), *rc::gen::arbitrary<unsigned>()));
+  const Region region = random_star(*rc::gen::inRange(3, 60), *rc::gen::arbitrary<unsigned>());
   const auto n = *rc::gen::element<std::uint32_t>(2, 3, 5, 10, 20, 40);
   const std::vector<Vec2> f = points_in(region, n, *rc::gen::arbitrary<unsigned>());
   const FeatureGraph graph = build_feature_graph(region, f);
@@ -181,7 +150,7 @@ RC_GTEST_PROP(FeatureGraph, Properties, ()) {
 }
 
 RC_GTEST_PROP(FeatureGraph, RenumberingRenumbersTheResult, ()) {
-  const Region region = make_region(star_contour(*rc::gen::inRange(3, 60), *rc::gen::arbitrary<unsigned>()));
+  const Region region = random_star(*rc::gen::inRange(3, 60), *rc::gen::arbitrary<unsigned>());
   const auto n = *rc::gen::element<std::uint32_t>(4, 10, 36);
   std::vector<Vec2> f = points_in(region, n, *rc::gen::arbitrary<unsigned>());
   // Equal lengths, too: a grid.

@@ -86,10 +86,6 @@ Vec3 normal_at(const SurfaceMesh& mesh, FaceId face) {
 
 }  // namespace
 
-std::uint32_t any_seed() {
-  return *rc::gen::noShrink(rc::gen::resize(rc::kNominalSize, rc::gen::arbitrary<std::uint32_t>()));
-}
-
 DecalInput random_decal(const Ground& ground, std::mt19937& random) {
   DecalInput input{"random", random_region(random), {}, {}};
   // Seen from a random side, as a person would pick the places: what a ray meets first and faces the viewer.
@@ -145,6 +141,20 @@ double Tally::share_solved() const {
       solved += outcome == "solved" ? count : 0;
     }
   return all == 0 ? 0 : double(solved) / all;
+}
+
+bool check(const Ground& ground, Tally& tally) {
+  return rc::check("random decals on a " + ground.name, [&] {
+    // Any seed at any stage of the run: RapidCheck scales numbers with its progress.
+    std::mt19937 random(
+        *rc::gen::noShrink(rc::gen::resize(rc::kNominalSize, rc::gen::arbitrary<std::uint32_t>())));
+    const DecalInput input = random_decal(ground, random);
+    SolveOptions options;
+    options.check_patch = true;
+    const std::string ended = outcome(solve_decal(*ground.mesh, input, options));
+    tally.add(ground.name, ended);
+    RC_ASSERT(!ended.empty());
+  });
 }
 
 }  // namespace applique::random_decals

@@ -18,9 +18,6 @@ struct Ground {
   double size;  ///< Decals are 0.2 to 1 times as wide, scene units.
 };
 
-/// A seed from RapidCheck, any at any stage of its run.
-std::uint32_t any_seed();
-
 /// A random region (star-shaped, a bent strip, or a block with notches) with one to nine random features,
 /// laid on the ground about a random point by its tangent plane and pulled about.
 DecalInput random_decal(const Ground& ground, std::mt19937& random);
@@ -40,5 +37,9 @@ class Tally {
  private:
   std::map<std::string, std::map<std::string, int>> counts_;
 };
+
+/// Solves random decals on the ground by RapidCheck, the patch checked after every step, and counts how they
+/// end. Whether each is either sound or says that it is not.
+bool check(const Ground& ground, Tally& tally);
 
 }  // namespace applique::random_decals

@@ -107,14 +107,20 @@ std::vector<float> Canvas::coverage(std::span<const Outline> outlines, Box& box)
   return cover;
 }
 
-void Canvas::fill(std::span<const Outline> outlines, const Paint& paint) {
+template <class Visit>
+void Canvas::for_covered(std::span<const Outline> outlines, Visit visit) const {
   Box box{};
   const std::vector<float> cover = coverage(outlines, box);
   if (cover.empty()) return;
   const float* at = cover.data();
   for (int y = box.y0; y < box.y1; ++y)
     for (int x = box.x0; x < box.x1; ++x, ++at)
-      if (*at > 0) blend(x, y, paint(Vec2(x + 0.5, y + 0.5)), *at);
+      if (*at > 0) visit(x, y, *at);
+}
+
+void Canvas::fill(std::span<const Outline> outlines, const Paint& paint) {
+  for_covered(outlines,
+              [&](int x, int y, float cover) { blend(x, y, paint(Vec2(x + 0.5, y + 0.5)), cover); });
 }
 
 void Canvas::stroke(std::span<const Dab> dabs, const Paint& paint) {
@@ -168,25 +174,17 @@ void Canvas::line(const Outline& line, double width, const Paint& paint, bool cl
 }
 
 void Canvas::begin_clip(std::span<const Outline> outlines) {
-  Box box{};
-  const std::vector<float> cover = coverage(outlines, box);
   clip_.assign(pixels_.size(), 0.0F);
-  if (cover.empty()) return;
-  const float* at = cover.data();
-  for (int y = box.y0; y < box.y1; ++y)
-    for (int x = box.x0; x < box.x1; ++x, ++at)
-      clip_[static_cast<std::size_t>(y) * width_ + x] = std::min(*at, 1.0F);
+  for_covered(outlines, [&](int x, int y, float cover) {
+    clip_[static_cast<std::size_t>(y) * width_ + x] = std::min(cover, 1.0F);
+  });
 }
 
 void Canvas::erase(std::span<const Outline> outlines) {
-  Box box{};
-  const std::vector<float> cover = coverage(outlines, box);
-  if (cover.empty()) return;
-  const float* at = cover.data();
-  for (int y = box.y0; y < box.y1; ++y)
-    for (int x = box.x0; x < box.x1; ++x, ++at)
-      for (float& channel : pixels_[static_cast<std::size_t>(y) * width_ + x])
-        channel *= 1 - std::min(*at, 1.0F);
+  for_covered(outlines, [&](int x, int y, float cover) {
+    for (float& channel : pixels_[static_cast<std::size_t>(y) * width_ + x])
+      channel *= 1 - std::min(cover, 1.0F);
+  });
 }
 
 Image Canvas::image() const {

@@ -74,6 +74,9 @@ class Canvas {
     int x0, y0, x1, y1;
   };
   [[nodiscard]] std::vector<float> coverage(std::span<const Outline> outlines, Box& box) const;
+  /// Calls visit(x, y, share) for the pixels that the outlines cover some of.
+  template <class Visit>
+  void for_covered(std::span<const Outline> outlines, Visit visit) const;
   void blend(int x, int y, const Rgba& colour, double coverage);
 
   int width_;

@@ -105,7 +105,13 @@ class PaperSolver {
     APPLIQUE_TRY(const auto regions, find_face_regions(surface_, input_, features_, graph_, paths));
     APPLIQUE_TRY(PaperSeed seed, build_paper_seed(bridged_, input_, features_, graph_, paths, regions));
     plane_ = map_seed(seed, features_, graph_, paths);
-    if (options_.trace != nullptr) options_.trace->paths = paths;
+    if (options_.trace != nullptr) {
+      *options_.trace = {};
+      for (const std::vector<VertexId>& path : paths) {
+        std::vector<Vec3>& line = options_.trace->paths.emplace_back();
+        for (VertexId v : path) line.push_back(surface_.positions[v]);
+      }
+    }
     return seed;
   }
 

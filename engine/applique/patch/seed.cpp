@@ -220,7 +220,12 @@ tl::expected<Seed, SeedFailure> build_seed(BridgedSurface& surface, std::span<co
   thickening.add_ring();
   Seed seed = std::move(thickening).finish(std::move(feature_faces));
   seed.paths.resize(tree.size());
-  for (Strand& strand : *strands) seed.paths[strand.edge] = std::move(strand.path);
+  for (const Strand& strand : *strands) {
+    std::vector<Vec3>& path = seed.paths[strand.edge];
+    path.push_back(position_of(surface.mesh(), features[strand.from].surface));
+    for (VertexId v : strand.path) path.push_back(surface.mesh().positions[v]);
+    path.push_back(position_of(surface.mesh(), features[strand.to].surface));
+  }
   return seed;
 }
 

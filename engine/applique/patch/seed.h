@@ -15,10 +15,10 @@ namespace applique {
 /// paths lie over one another the patch has several sheets (§4.2, Fig. 7).
 struct Seed {
   ImmersedDisc disc;
-  std::vector<PatchFaceId> feature_faces;    ///< The patch face over each feature, pinned.
-  std::vector<std::vector<VertexId>> paths;  ///< By edge of the tree: the surface vertices passed.
-  IdVector<PatchVertexId, Vec2> image;       ///< Where about in the image the vertices are (§4.3).
-  std::uint32_t sheets = 1;                  ///< How often the paths cover a face at most.
+  std::vector<PatchFaceId> feature_faces;  ///< The patch face over each feature, pinned.
+  std::vector<std::vector<Vec3>> paths;    ///< By edge of the tree, from feature to feature, scene units.
+  IdVector<PatchVertexId, Vec2> image;     ///< Where about in the image the vertices are (§4.3).
+  std::uint32_t sheets = 1;                ///< How often the paths cover a face at most.
 };
 
 /// A feature as the seed sees it.
