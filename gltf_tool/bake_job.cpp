@@ -170,10 +170,7 @@ Result<void> add_overlays(SolvedJob& job, Document& document) {
 
 }  // namespace
 
-Result<std::unique_ptr<GpuBaker>> create_baker(const std::string& device_selector) {
-  DeviceRequest request;
-  request.selector = device_selector;
-  APPLIQUE_TRY(Device device, Device::create(request));
+Result<std::unique_ptr<GpuBaker>> create_baker(Device device) {
   auto baker = std::make_unique<GpuBaker>(GpuBaker{std::move(device), std::nullopt});
   APPLIQUE_TRY(baker->transfer, GpuTransfer::create(baker->device));
   return baker;

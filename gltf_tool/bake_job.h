@@ -20,8 +20,8 @@ struct GpuBaker {
   std::optional<GpuTransfer> transfer;  ///< Always there after create_baker.
 };
 
-/// Errors: no_device, device_failed.
-Result<std::unique_ptr<GpuBaker>> create_baker(const std::string& device_selector);
+/// Errors: device_failed.
+Result<std::unique_ptr<GpuBaker>> create_baker(Device device);
 
 /// A model with its decals, not yet saved, and what the report says about it.
 struct BakedJob {  // NOLINT(bugprone-exception-escape): so is Document

@@ -78,22 +78,19 @@ Result<void> run_bake(const BakeArguments& arguments, const CommonArguments& com
   APPLIQUE_TRY(const Job job, load_job(arguments.job));
   APPLIQUE_CHECK(check_outputs(arguments, job));
 
-  // The device is made while the geometry is solved.
-  auto baker_ready = std::async(std::launch::async, [&] { return create_baker(arguments.device); });
-  // One that was named may not exist, which is told before the work.
-  std::unique_ptr<GpuBaker> baker;
-  if (!arguments.device.empty()) {
-    APPLIQUE_TRY(baker, baker_ready.get());
-  }
+  // A device that is not there is told before the work; the baker's pipelines are made while the geometry is solved.
+  DeviceRequest request;
+  request.selector = arguments.device;
+  APPLIQUE_TRY(Device device, Device::create(request));
+  auto baker_ready =
+      std::async(std::launch::async, [&] { return create_baker(std::move(device)); });
   std::optional<Progress> progress(std::in_place, !common.quiet);
   APPLIQUE_TRY(SolvedJob solved, solve_job(job, show_stages(*progress, 0, solve_share)));
   ReportInput input;
   input.command = "bake";
   input.times = solved.times;
   Stopwatch watch;
-  if (!baker) {
-    APPLIQUE_TRY(baker, baker_ready.get());
-  }
+  APPLIQUE_TRY(const std::unique_ptr<GpuBaker> baker, baker_ready.get());
   input.times.add("wait_for_device", watch.lap());
   spdlog::debug("Vulkan device: {}", baker->device.name());
 

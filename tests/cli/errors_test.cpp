@@ -196,6 +196,12 @@ TEST_F(ErrorsTest, DeviceThatIsNotThere) {
   json job = good_job();
   job["decals"][0]["features"][1]["position"] = {2, 0, 0};
   expect_failure(job, 5, {"nonsense"}, "bake job.json -o out.glb --device nonsense");
+  // No driver at all.
+  setenv("VK_DRIVER_FILES", "/nowhere.json", 1);
+  setenv("VK_ICD_FILENAMES", "/nowhere.json", 1);
+  expect_failure(job, 5, {"no Vulkan device", "install a driver"}, "bake job.json -o out.glb");
+  unsetenv("VK_DRIVER_FILES");
+  unsetenv("VK_ICD_FILENAMES");
 }
 
 TEST(Usage, WrongUsageIsOne) {

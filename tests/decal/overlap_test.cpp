@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <functional>
 #include <map>
 #include <numbers>
 
@@ -126,6 +127,66 @@ Vec3 loop(double t) {
   const double s = (2 * t - 1) * 1.25 * pi;  // from -225 to 225 degrees round a circle of radius 0.55
   const double along = 0.55 * std::sin(s), across = 0.55 * (1 + std::cos(s)) - 0.3;
   return Vec3(along, across, std::sqrt(1 - along * along - across * across));
+}
+
+/// A band of 1400 x 200 pixels over a closed surface, of `length` in all, pinned at its middle and at a quarter of a
+/// turn of `radius` to either side.
+DecalInput band(const SurfaceMesh& surface, double radius, const std::function<Vec3(double)>& around) {
+  constexpr ImageFrame frame{1400, 200};
+  Region region = *Region::from_contour({{0, 0}, {1400, 0}, {1400, 200}, {0, 200}}, frame);
+  std::vector<Pin> pins;
+  for (const double turn : {-0.25, -0.125, 0.0, 0.125, 0.25})
+    pins.push_back({{700 + 1000 * turn, 100}, radius * around(2 * pi * turn)});
+  return decal(surface, std::move(region), pins);
+}
+
+/// The band is 1.4 times as long as the way round.
+struct ClosedCase {
+  const char* name;
+  SurfaceMesh surface;
+  DecalInput input;
+};
+
+std::vector<ClosedCase> closed_cases() {
+  std::vector<ClosedCase> cases;
+  SurfaceMesh sphere = shapes::sphere(5, 1).weld(), torus = shapes::torus(128, 48, 1, 0.4).weld(),
+              cylinder = shapes::cylinder(96, 60, 1, 4).weld();
+  const auto equator = [](double a) { return Vec3(std::cos(a), std::sin(a), 0); };
+  DecalInput on_sphere = band(sphere, 1, equator);
+  DecalInput on_torus = band(torus, 1.4, equator);
+  DecalInput on_cylinder =
+      band(cylinder, 1, [](double a) { return Vec3(std::cos(a), std::sin(a), 2.02); });
+  cases.push_back({"sphere", std::move(sphere), std::move(on_sphere)});
+  cases.push_back({"torus", std::move(torus), std::move(on_torus)});
+  cases.push_back({"cylinder", std::move(cylinder), std::move(on_cylinder)});
+  return cases;
+}
+
+TEST(Overlap, ABandThatMeetsItselfRoundAClosedSurfaceKeepsTheDisc) {
+  for (const ClosedCase& shape : closed_cases()) {
+    SCOPED_TRACE(shape.name);
+    for (const Overlap overlap : {Overlap::stop, Overlap::allow}) {
+      SCOPED_TRACE(overlap == Overlap::stop ? "stop" : "allow");
+      SolveOptions options;
+      options.overlap = overlap;
+      options.check_patch = true;
+      const auto map = solve_decal(shape.surface, shape.input, options);
+      ASSERT_TRUE(map.has_value()) << map.error().message;
+      expect_exact_and_unfolded(*map);
+      if (overlap == Overlap::stop) {
+        // One sheet, once round: nothing twice, and no gap at the seam.
+        EXPECT_EQ(map->status, Coverage::clipped_by_cover);
+        EXPECT_TRUE(stacks(*map).empty());
+        EXPECT_NEAR(map->quality.coverage, 1 / 1.4, 0.005);
+      } else {
+        EXPECT_EQ(map->status, Coverage::covered);
+        EXPECT_FALSE(stacks(*map).empty());
+        EXPECT_EQ(map->sheets, 2U);
+        EXPECT_NEAR(map->quality.coverage, 1, 0.001);
+      }
+      EXPECT_LT(map->quality.l2_stretch, 1.02);
+    }
+  }
 }
 
 TEST(Overlap, ARibbonCrossesItselfOnASphere) {

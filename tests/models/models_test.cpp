@@ -151,7 +151,9 @@ TEST_F(Models, BakeOnTheGpuAsOnTheCpu) {
 }
 
 TEST_F(Models, TheValidatorFindsNothingNew) {
-  auto baker = create_baker("");
+  auto device = Device::create({});
+  ASSERT_TRUE(device) << device.error().message;
+  auto baker = create_baker(std::move(*device));
   ASSERT_TRUE(baker) << baker.error().message;
   std::vector<std::filesystem::path> files;
   for (const ModelJob& job : jobs) {

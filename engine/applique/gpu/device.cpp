@@ -102,6 +102,12 @@ struct Choice {
   VkPhysicalDeviceProperties properties;
 };
 
+tl::unexpected<Error> no_device_present() {
+  return fail(
+      ErrorCode::no_device,
+      "no Vulkan device is present; install a driver (the package mesa-vulkan-drivers has a software one)");
+}
+
 Result<Choice> choose_device(VkInstance instance, const std::string& selector) {
   std::uint32_t count = 0;
   vkEnumeratePhysicalDevices(instance, &count, nullptr);
@@ -127,11 +133,7 @@ Result<Choice> choose_device(VkInstance instance, const std::string& selector) {
     }
   }
   if (best) return *best;
-  if (devices.empty()) {
-    return fail(
-        ErrorCode::no_device,
-        "no Vulkan device is present; install a driver (the package mesa-vulkan-drivers has a software one)");
-  }
+  if (devices.empty()) return no_device_present();
   const std::string asked =
       selector.empty() ? "no Vulkan device fits" : fmt::format("no Vulkan device is '{}'", selector);
   return fail(ErrorCode::no_device, fmt::format("{}: {}", asked, fmt::join(reasons, "; ")));
@@ -200,6 +202,7 @@ Result<void> Device::State::create_instance(bool validation) {
   }
   if (const VkResult result = vkCreateInstance(&info, nullptr, &handles.instance); result != VK_SUCCESS) {
     handles.instance = VK_NULL_HANDLE;
+    if (result == VK_ERROR_INCOMPATIBLE_DRIVER) return no_device_present();
     return fail(ErrorCode::no_device,
                 fmt::format("vkCreateInstance failed with {}; check the Vulkan drivers with "
                             "vulkaninfo",
