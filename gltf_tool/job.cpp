@@ -1,12 +1,11 @@
 #include "job.h"
 
-#include <fstream>
 #include <map>
-#include <sstream>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "document.h"
 #include "schema.h"
 
 namespace applique {
@@ -70,6 +69,11 @@ BlendMode blend_of(const std::string& name) {
   return modes.at(name);
 }
 
+Energy energy_of(const json& value) {
+  if (value.is_number()) return {value.get<double>()};
+  return value == "conformal" ? Energy::conformal : Energy::isometric;
+}
+
 DecalJob decal_of(const json& decal, const std::filesystem::path& folder) {
   DecalJob out;
   out.name = decal["name"].get<std::string>();
@@ -86,7 +90,7 @@ DecalJob decal_of(const json& decal, const std::filesystem::path& folder) {
   out.output = decal.value("output", "bake") == "overlay" ? DecalOutput::overlay : DecalOutput::bake;
   if (decal.contains("offset")) out.offset = decal["offset"].get<double>();
   out.method = decal.value("method", "applique") == "paper" ? Method::paper : Method::applique;
-  out.energy = decal.value("energy", "isometric") == "conformal" ? Energy::conformal : Energy::isometric;
+  if (decal.contains("energy")) out.energy = energy_of(decal["energy"]);
   out.overlap = decal.value("overlap", "stop") == "allow" ? Overlap::allow : Overlap::stop;
   return out;
 }
@@ -108,13 +112,9 @@ Result<void> check_names(const std::vector<DecalJob>& decals, const std::string&
 }  // namespace
 
 Result<Job> load_job(const std::filesystem::path& path) {
-  std::ifstream stream(path, std::ios::binary);
-  std::ostringstream text;
-  if (!stream || std::filesystem::is_directory(path) || !(text << stream.rdbuf()))
-    return fail(ErrorCode::file_unreadable, fmt::format("{}: the job file cannot be read", path.string()));
-
+  APPLIQUE_TRY(const auto bytes, read_file(path));
   const std::string file = path.filename().string();
-  APPLIQUE_TRY(const json document, parse_json(text.str(), file));
+  APPLIQUE_TRY(const json document, parse_json({bytes.begin(), bytes.end()}, file));
   APPLIQUE_CHECK(check_schema(document, job_schema(), file));
 
   Job job;

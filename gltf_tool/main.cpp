@@ -1,5 +1,9 @@
 
 
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <spdlog/sinks/stdout_color_sinks.h>
@@ -77,7 +81,11 @@ int main(int argc, char** argv) {
                                       : explain_command->parsed() ? applique::run_explain(explain, common)
                                       : inspect_command->parsed() ? applique::run_inspect(inspect, common)
                                                                   : applique::run_render(render, common);
-  if (done) return 0;
+  if (done && std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return 0;
+  if (done) {
+    spdlog::error("the output cannot be written: {}", std::strerror(errno));
+    return applique::exit_status(applique::ErrorCode::output_unwritable);
+  }
   spdlog::error("{}", done.error().message);
   return applique::exit_status(done.error().code);
 }

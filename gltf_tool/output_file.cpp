@@ -113,6 +113,8 @@ Result<void> write_file(const std::filesystem::path& path, std::string_view text
 void remove_temporary_on_interrupt() {
   std::signal(SIGINT, handle_interrupt);
   std::signal(SIGTERM, handle_interrupt);
+  // A file that grows over the system's limit is a write that fails, not the end.
+  std::signal(SIGXFSZ, SIG_IGN);
 }
 
 }  // namespace applique

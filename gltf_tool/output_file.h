@@ -25,7 +25,7 @@ Result<void> check_distinct(const std::vector<std::filesystem::path>& outputs,
                             const std::vector<std::filesystem::path>& inputs);
 
 /// From here on an interrupt (SIGINT, SIGTERM) removes the temporary file that is being written, and ends the
-/// process.
+/// process. A file over the system's size limit is an error of the write.
 void remove_temporary_on_interrupt();
 
 }  // namespace applique

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <set>
+#include <string>
 #include <vector>
 
 #include <fmt/format.h>
@@ -155,8 +156,23 @@ const json& report_schema() {
 }
 
 Result<json> parse_json(const std::string& text, const std::string& file) {
+  // The library takes the last of several values of one name, of which the others would be lost without a
+  // word.
+  std::vector<std::set<std::string>> names;
+  std::string twice;
+  const auto note_name = [&](int, json::parse_event_t event, const json& parsed) {
+    if (event == json::parse_event_t::object_start) names.emplace_back();
+    if (event == json::parse_event_t::object_end) names.pop_back();
+    if (event == json::parse_event_t::key && !names.back().insert(parsed.get<std::string>()).second)
+      twice = parsed.get<std::string>();
+    return true;
+  };
   try {
-    return json::parse(text);
+    json document = json::parse(text, note_name);
+    if (!twice.empty())
+      return fail(ErrorCode::json_invalid,
+                  fmt::format("{}: \"{}\" is given twice in one object", file, twice));
+    return document;
   } catch (const json::exception& error) {
     // "[json.exception.parse_error.101] parse error at line 3, column 7: syntax error while …"
     const std::string what = error.what();

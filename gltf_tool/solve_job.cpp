@@ -137,6 +137,11 @@ Result<void> solve_geometry(const Model& model, SurfaceCache& surfaces, SolvedDe
   }
   decal.times.add("places", watch.lap());
 
+  if (decal.job.offset && decal.job.output != DecalOutput::overlay)
+    decal.warnings.push_back(
+        {"offset_ignored",
+         fmt::format("decal '{}': 'offset' is not used, because only an overlay has one", name)});
+
   SolveOptions options;
   options.method = decal.job.method;
   options.energy = decal.job.energy;

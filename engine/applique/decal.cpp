@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <set>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "applique/base/parallel.h"
 #include "applique/base/stage_timer.h"
@@ -18,18 +20,23 @@
 #include "applique/patch/sheets.h"
 #include "applique/region/clusters.h"
 #include "applique/region/influence.h"
+#include "applique/unfold.h"
 #include "applique/warp/build_warp.h"
 
 namespace applique {
 namespace {
 
 constexpr std::uint32_t most_sheets = 16;
+constexpr double most_patch_cover = 1.3;      // of the region, by a patch that is to lie over itself
 constexpr double most_patch_area = 4;         // of a patch that may cover more, times the region's
 constexpr double linear_tolerance_px = 0.02;  // §5.1 of the design
 constexpr double least_coverage = 0.01;       // below it the result is of no use
 constexpr double few_changes = 0.03;          // of a patch's faces
 constexpr int trial_solves = 6;               // after them, groups stay
 constexpr int most_refreshes = 8;             // of the vertices' influence
+constexpr int growing_refreshes = 2;          // of it while the patch is to change
+constexpr double hardly_stretched = 1.1;      // L2, of a map to which there is no need to seek another
+constexpr double most_coverage = 1.005;       // beyond it a map overlaps itself
 constexpr double refreshed = 1e-5;            // of the region's diameter: what a last refresh moves
 
 /// The similarity that gives a lone feature's neighbourhood the wanted size and direction (§3.3 of the
@@ -50,8 +57,9 @@ Result<Similarity> lone_alignment(const SurfaceMesh& surface, const DecalInput& 
   if (normal.dot((own[1] - own[0]).cross(own[2] - own[0])) <= 0)
     normal = (own[1] - own[0]).cross(own[2] - own[0]);
   normal.normalize();
-  const Vec3 up = input.lone->up - input.lone->up.dot(normal) * normal;
-  if (!(up.norm() > 1e-3 * input.lone->up.norm()))
+  const Vec3 wanted = input.lone->up.stableNormalized();
+  const Vec3 up = wanted - wanted.dot(normal) * normal;
+  if (!(up.norm() > 1e-3))
     return fail(
         ErrorCode::size_missing,
         fmt::format("decal '{}': \"up\" points along the surface's normal at the feature; give a direction "
@@ -94,15 +102,44 @@ std::vector<Vec2> warp_all(const Warp& warp, const std::vector<Vec2>& places,
   return warped;
 }
 
+/// Triangles that are turned over.
+std::uint32_t folds(const DecalMap& map) {
+  return map.quality.flipped_plane + map.quality.flipped_image;
+}
+
+/// Whether a map is injective as far as can be told: the warp of one sheet is, whatever its triangles'
+/// corners say.
+bool is_sound(const DecalMap& map) {
+  const bool one_sheet = map.sheets == 1 && map.groups == 1 && map.warp.steps > 0;
+  return folds(map) == 0 && (one_sheet || map.quality.coverage < most_coverage) &&
+         map.status != Coverage::not_converged;
+}
+
+/// Whether a map is to be preferred: one without folds or overlaps, then one that shows more, then the less
+/// stretched.
+bool sounder(const DecalMap& a, const DecalMap& b) {
+  if (is_sound(a) != is_sound(b)) return is_sound(a);
+  if (folds(a) != folds(b)) return folds(a) < folds(b);
+  constexpr double more = 0.01;  // of the region
+  const double shown_a = std::min(a.quality.coverage, 1.0), shown_b = std::min(b.quality.coverage, 1.0);
+  if (std::abs(shown_a - shown_b) > more) return shown_a > shown_b;
+  return a.quality.l2_stretch < b.quality.l2_stretch;
+}
+
+/// What is taken for granted in an attempt at a decal.
+struct Attempt {
+  Crossings crossings;  ///< What paths are that cross on the surface.
+  bool grouping;        ///< Whether features may move the image in groups.
+};
+
 /// One decal in the making: the state that the growth's iterations share.
 class Solver {
  public:
-  /// `grouping`: whether features may move the image in groups.
-  Solver(const SurfaceMesh& surface, const DecalInput& input, const SolveOptions& options, bool grouping)
+  Solver(const SurfaceMesh& surface, const DecalInput& input, const SolveOptions& options, Attempt attempt)
       : surface_(surface),
         input_(input),
         options_(options),
-        grouping_(grouping),
+        attempt_(attempt),
         bridged_(surface),
         targets_(targets_of(input)) {}
 
@@ -115,6 +152,9 @@ class Solver {
     map_.times.total = total;
     return std::move(map_);
   }
+
+  /// Whether the seed's paths crossed, be it in one sheet.
+  [[nodiscard]] bool crossed() const { return crossed_; }
 
  private:
   Result<void> solve() {
@@ -129,12 +169,11 @@ class Solver {
     APPLIQUE_CHECK(grow(seed.disc, growth));
     finish(seed.disc, growth);
     if (map_.quality.coverage < least_coverage)
-      return fail(
-          ErrorCode::not_solved,
-          fmt::format(
-              "decal '{}': only {:.2g} % of the image fits on the surface under it; make it smaller, or "
-              "check the features' places",
-              input_.name, 100 * map_.quality.coverage));
+      return fail(ErrorCode::not_solved,
+                  fmt::format("decal '{}': only {:.2g} % of the region fits on the surface under it; make "
+                              "the image smaller if it is larger "
+                              "than the surface, or check the features' places",
+                              input_.name, 100 * map_.quality.coverage));
     return {};
   }
 
@@ -143,7 +182,8 @@ class Solver {
     std::vector<SeedFeature> features;
     for (std::size_t k = 0; k < targets_.size(); ++k)
       features.push_back({input_.features[k].surface, targets_[k]});
-    auto seed = build_seed(bridged_, features, map_.graph.tree);
+    auto seed = build_seed(bridged_, features, map_.graph.tree, attempt_.crossings);
+    if (seed) crossed_ = seed->crossed;
     if (seed && options_.trace != nullptr) *options_.trace = {seed->paths, {}};
     if (seed) return std::move(*seed);
     const auto [i, j] = seed.error().disconnected;
@@ -180,6 +220,10 @@ class Solver {
   Result<void> align(const ImmersedDisc& disc, const Growth& growth, std::vector<Vec2>& features,
                      std::vector<Vec2>& plane) {
     Similarity similarity;
+    // Places of several turns fall together when all is to be one sheet.
+    if (crossed_ && attempt_.crossings == Crossings::one_sheet && coincide(features))
+      return fail(ErrorCode::not_solved,
+                  fmt::format("decal '{}': features lie over one another", input_.name));
     if (features.size() == 1) {
       APPLIQUE_TRY(similarity, lone_alignment(surface_, input_, disc, growth.feature_faces()[0], features[0],
                                               targets_[0], plane));
@@ -196,12 +240,22 @@ class Solver {
     return {};
   }
 
+  static bool coincide(const std::vector<Vec2>& features) {
+    double extent = 0, nearest = std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i < features.size(); ++i)
+      for (std::size_t j = 0; j < i; ++j) {
+        extent = std::max(extent, std::abs(features[i] - features[j]));
+        nearest = std::min(nearest, std::abs(features[i] - features[j]));
+      }
+    return nearest < 1e-3 * extent;
+  }
+
   /// Features move the image in groups while it lies over itself in the plane (§3.6 of the design; there a
   /// graph that overlaps is enough, but in one sheet that is distortion, which a single group bends with
   /// fewer folds). The first embeddings are of thin patches and may mislead; later on there is no way back,
   /// so that the growth ends.
   void choose_groups(const ImmersedDisc& disc, const Growth& growth, const std::vector<Vec2>& features) {
-    if (!grouping_) return;
+    if (!attempt_.grouping) return;
     const bool graph = growth.cover_limit() > 1 && graph_overlaps(features, map_.graph);
     if (!graph && !overlaps_in_plane(disc, points_, input_.region)) {
       if (map_.solves <= trial_solves) {
@@ -227,7 +281,7 @@ class Solver {
                    const std::vector<Vec2>& features) {
     find_influence(disc, growth);
     built_ = build_warp(features, targets_, map_.graph, probes(features), groups_);
-    const int refreshes = groups_.count == 1 ? 0 : most_refreshes;
+    const int refreshes = groups_.count == 1 ? 0 : settled_ ? most_refreshes : growing_refreshes;
     for (int refresh = 0; refresh <= refreshes; ++refresh) {
       if (refresh > 0) find_influence(disc, growth);
       const std::vector<Vec2> image = warp_all(built_.warp, plane, influence_);
@@ -288,7 +342,7 @@ class Solver {
       APPLIQUE_CHECK(parameterize(disc, growth, {energy, !padded}));
       if (options_.trace != nullptr) trace_step(disc, growth);
       StageTimer stage(map_.times.grow);
-      if (map_.solves >= options_.max_solves) break;
+      if (map_.solves >= options_.max_solves || runs_over_itself(disc)) break;
       auto inside = growth.inside(points_);
       const std::size_t peeled = energy == Energy::conformal && !padded ? growth.peel(points_, inside) : 0;
       const std::size_t added =
@@ -316,7 +370,7 @@ class Solver {
           if (growth.grow(points_, inside, scale_, {}) > 0) energy = Energy::conformal;
         } else {
           growth.pad(points_);
-          padded = true;
+          padded = settled_ = true;
         }
       }
       growth.compact(points_);
@@ -324,6 +378,19 @@ class Solver {
     }
     map_.status = growth.coverage(points_);
     return {};
+  }
+
+  /// Whether paths that were taken to lie over one another have led to an image that covers itself in itself,
+  /// which no more growth heals.
+  [[nodiscard]] bool runs_over_itself(const ImmersedDisc& disc) const {
+    if (!crossed_ || attempt_.crossings == Crossings::one_sheet || map_.solves <= trial_solves) return false;
+    double area = 0;
+    for (const PatchFace& face : disc.faces()) {
+      const auto& v = face.vertices;
+      const Vec2 a = points_[v[0]].image, b = points_[v[1]].image, c = points_[v[2]].image;
+      if (input_.region.contains((a + b + c) / 3.0)) area += 0.5 * std::abs(cross(b - a, c - a));
+    }
+    return area > most_patch_cover * input_.region.area();
   }
 
   /// Whether the region stops at itself and may go on, unless the patch has run out of all proportion.
@@ -390,7 +457,40 @@ class Solver {
 
   void finish(const ImmersedDisc& disc, const Growth& growth) {
     StageTimer stage(map_.times.quality);
+    describe(disc, growth);
+    // Features in groups that fold one sheet are solved again without groups.
+    if (folds(map_) > 0 && (groups_.count == 1 || map_.sheets > 1)) unfold(disc, growth);
+    warn();
+  }
+
+  /// Where the embedding or the warp has turned triangles over: a map that turns none over and is linear in
+  /// each of them takes the warp's place, if there is one.
+  void unfold(const ImmersedDisc& disc, const Growth& growth) {
+    std::vector<PlacedPoint> features;
+    for (std::size_t k = 0; k < targets_.size(); ++k) {
+      const auto& v = disc.faces()[growth.feature_faces()[k]].vertices;
+      features.push_back(
+          {{static_cast<int>(v[0].value), static_cast<int>(v[1].value), static_cast<int>(v[2].value)},
+           input_.features[k].surface.barycentric,
+           targets_[k]});
+    }
+    Unfolded unfolded = unfold_image(measure_disc(disc), scale_, map_.image.raw(), features);
+    at_fault_ = std::move(unfolded.at_fault);
+    if (unfolded.flips > 0) return;
+    unfolded_ = folds(map_);
+    for (PatchVertexId v : ids<PatchVertexId>(points_.size()))
+      points_[v].plane = points_[v].image = unfolded.image[v.value];
+    built_.warp = {};
+    groups_ = {};
+    describe(disc, growth);
+  }
+
+  /// The decal as it is: all of the map but its warnings.
+  void describe(const ImmersedDisc& disc, const Growth& growth) {
     map_.patch = patch_of(disc);
+    map_.textured.clear();
+    map_.plane.clear();
+    map_.image.clear();
     for (const PatchFace& face : map_.patch.faces) {
       const auto& v = face.vertices;
       map_.textured.push_back(
@@ -401,7 +501,7 @@ class Solver {
       map_.plane.push_back(point.plane);
       map_.image.push_back(point.image);
     }
-    map_.warp = std::move(built_.warp);
+    map_.warp = built_.warp;
     map_.groups = groups_.count;
     map_.feature_groups = groups_.of;
     map_.influence = groups_.count == 1 ? std::vector<double>(map_.patch.vertices.size(), 1) : influence_;
@@ -419,7 +519,6 @@ class Solver {
       map_.quality.feature_residual.push_back(std::abs(at - targets_[k]) *
                                               input_.region.frame().pixels_per_unit());
     }
-    warn();
   }
 
   void order_sheets(const Growth& growth) {
@@ -435,7 +534,7 @@ class Solver {
   /// A face is linear when the warp at its edges' middles and its centroid agrees with interpolation, and no
   /// feature lies in it (§5.1 of the design).
   void mark_linear_faces(const Growth& growth) {
-    map_.linear.resize(map_.patch.faces.size(), true);
+    map_.linear = IdVector<PatchFaceId, char>(map_.patch.faces.size(), true);
     if (map_.warp.steps == 0) return;
     const double tolerance = linear_tolerance_px / input_.region.frame().pixels_per_unit();
     // Where interpolation is tested, what it gives there, and the faces that depend on it.
@@ -492,6 +591,20 @@ class Solver {
     const auto add = [&](const char* code, std::string message) {
       map_.warnings.push_back({code, fmt::format("decal '{}': {}", input_.name, message)});
     };
+    if (unfolded_ > 0)
+      add("unfolded",
+          fmt::format("the exact warp turned {} triangles over; a map that turns none over, and is linear in "
+                      "each triangle, took its place",
+                      unfolded_));
+    if (!at_fault_.empty()) {
+      std::vector<std::string> names;
+      for (const std::uint32_t k : at_fault_) names.push_back(feature_name(input_, k));
+      add("features_fold",
+          fmt::format("{} force the image to fold: without {} it would lie flat; move {}, or check the "
+                      "place",
+                      fmt::join(names, " and "), names.size() > 1 ? "them" : "it",
+                      names.size() > 1 ? "them" : "it"));
+    }
     if (rung_ == EmbeddingRung::circle)
       add("embedding_on_circle", "the conformal map folded; a flip-free one took its place");
     for (const PairStress& stress : built_.stressed)
@@ -505,11 +618,13 @@ class Solver {
   const SurfaceMesh& surface_;
   const DecalInput& input_;
   const SolveOptions& options_;
-  bool grouping_;
+  Attempt attempt_;
+  bool crossed_ = false;
   BridgedSurface bridged_;
   std::vector<Vec2> targets_;  ///< Features in the image, plane units.
   PatchPoints points_;
   BuiltWarp built_;
+  bool settled_ = false;   ///< The patch is not going to grow any more.
   bool mirrored_ = false;  ///< By the last embedding, the features run the other way round on the surface.
   std::vector<std::uint32_t> clusters_;  ///< Group by feature, as the image has them; once asked for.
   FeatureGroups groups_;
@@ -517,7 +632,9 @@ class Solver {
   std::optional<InfluenceField> influence_field_;  ///< Of groups_, while there are several.
   std::vector<double> influence_;                  ///< [vertex * groups + group], while there are several.
   EmbeddingRung rung_ = EmbeddingRung::conformal;
-  double scale_ = 1;  ///< Of the alignment, plane units per scene unit.
+  std::size_t unfolded_ = 0;             ///< Triangles that were turned over before unfold().
+  std::vector<std::uint32_t> at_fault_;  ///< Features that force a fold.
+  double scale_ = 1;                     ///< Of the alignment, plane units per scene unit.
   DecalMap map_;
 };
 
@@ -535,14 +652,31 @@ std::vector<double> DecalMap::influence_at(const std::array<PatchVertexId, 3>& c
 Result<DecalMap> solve_decal(const SurfaceMesh& surface, const DecalInput& input,
                              const SolveOptions& options) {
   if (options.method == Method::paper) return solve_decal_as_paper(surface, input, options);
-  Result<DecalMap> map = Solver(surface, input, options, true).run();
-  const auto folds = [](const DecalMap& solved) {
-    return solved.quality.flipped_plane + solved.quality.flipped_image;
+  bool crossed = false;
+  SolveTrace trace;  // Of the attempt that is kept.
+  Result<DecalMap> map = fail(ErrorCode::not_solved, "");
+  const auto attempt = [&](Attempt assumed, const auto& better) {
+    SolveOptions own = options;
+    SolveTrace own_trace;
+    if (options.trace != nullptr) own.trace = &own_trace;
+    Solver solver(surface, input, own, assumed);
+    Result<DecalMap> solved = solver.run();
+    crossed = crossed || solver.crossed();
+    if (map && !(solved && better(*solved, *map))) return;
+    map = std::move(solved);
+    trace = std::move(own_trace);
   };
-  if (!map || map->groups == 1 || map->sheets > 1 || folds(*map) == 0) return map;
+  // Paths that cross on the surface may mean that the image lies over itself there, or that features were
+  // moved past one another in one sheet: what comes out tells.
+  attempt({Crossings::one_sheet, true}, sounder);
+  if (crossed && !(map && is_sound(*map) && map->quality.l2_stretch < hardly_stretched))
+    attempt({Crossings::overlap, true}, sounder);
   // Parts that only touch in the plane, not on the surface: without groups it may go with fewer folds.
-  Result<DecalMap> ungrouped = Solver(surface, input, options, false).run();
-  return ungrouped && folds(*ungrouped) < folds(*map) ? std::move(ungrouped) : std::move(map);
+  if (map && map->groups > 1 && map->sheets == 1 && folds(*map) > 0)
+    attempt({Crossings::one_sheet, false},
+            [](const DecalMap& a, const DecalMap& b) { return folds(a) < folds(b); });
+  if (options.trace != nullptr) *options.trace = std::move(trace);
+  return map;
 }
 
 }  // namespace applique

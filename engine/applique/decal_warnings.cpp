@@ -1,5 +1,7 @@
 #include "applique/decal_warnings.h"
 
+#include <algorithm>
+
 #include <fmt/format.h>
 
 namespace applique {
@@ -25,10 +27,10 @@ std::vector<Warning> quality_warnings(const std::string& name, const DecalMap& m
       break;
     case Coverage::clipped_by_cover:
       add("clipped_by_cover",
-          fmt::format("the region meets itself on the surface; {:.2f} % of it is shown{}", percent,
-                      overlap == Overlap::stop
-                          ? "; \"overlap\": \"allow\" on the decal lets it go on over itself"
-                          : ""));
+          fmt::format(
+              "the region meets itself on the surface and stops there; {:.2f} % of it is shown{}", percent,
+              overlap == Overlap::stop ? "; \"overlap\": \"allow\" on the decal lets it go on over itself"
+                                       : ""));
       break;
     case Coverage::clipped_closed:
       add("clipped_closed",
@@ -40,11 +42,14 @@ std::vector<Warning> quality_warnings(const std::string& name, const DecalMap& m
       break;
   }
   if (map.quality.flipped_plane + map.quality.flipped_image > 0)
-    add("flipped_triangles", fmt::format("{} triangles are turned over in the embedding and {} in the "
-                                         "image; move the features nearer to "
-                                         "where the image wants them, or add some",
-                                         map.quality.flipped_plane, map.quality.flipped_image));
-  if (map.quality.coverage > most_coverage)
+    add("flipped_triangles",
+        fmt::format(
+            "{} triangles are turned over; move the features nearer to where the image wants them, or add "
+            "some",
+            std::max(map.quality.flipped_plane, map.quality.flipped_image)));
+  // The exact warp of one sheet cannot: what its triangles' corners measure is then how much it bends.
+  const bool one_sheet = map.sheets == 1 && map.groups == 1 && map.warp.steps > 0;
+  if (map.quality.coverage > most_coverage && !one_sheet)
     add("overlapping_map",
         fmt::format("parts of the region land on the surface more than once ({:.2f} % in all): the "
                     "features pull the image over itself; check that none are swapped",

@@ -55,16 +55,14 @@ CLI::App* add_bake_command(CLI::App& app, BakeArguments& arguments) {
 
 namespace {
 
-/// A model may be baked in place; nothing else that the job reads may be written over.
+/// Nothing that the job reads may be written over: a model baked in place would get the decals twice the next
+/// time.
 Result<void> check_outputs(const BakeArguments& arguments, const Job& job) {
-  std::vector<std::filesystem::path> inputs = {job.path};
+  std::vector<std::filesystem::path> inputs = {job.path, job.model};
   for (const DecalJob& decal : job.decals) inputs.push_back(decal.image);
   std::vector<std::filesystem::path> outputs = {arguments.output};
-  for (const auto& output : {arguments.report, arguments.preview}) {
-    if (!output) continue;
-    outputs.push_back(*output);
-    APPLIQUE_CHECK(check_distinct({*output}, {job.model}));
-  }
+  for (const auto& output : {arguments.report, arguments.preview})
+    if (output) outputs.push_back(*output);
   return check_distinct(outputs, inputs);
 }
 
@@ -78,12 +76,12 @@ Result<void> run_bake(const BakeArguments& arguments, const CommonArguments& com
   APPLIQUE_TRY(const Job job, load_job(arguments.job));
   APPLIQUE_CHECK(check_outputs(arguments, job));
 
-  // A device that is not there is told before the work; the baker's pipelines are made while the geometry is solved.
+  // A device that is not there is told before the work; the baker's pipelines are made while the geometry is
+  // solved.
   DeviceRequest request;
   request.selector = arguments.device;
   APPLIQUE_TRY(Device device, Device::create(request));
-  auto baker_ready =
-      std::async(std::launch::async, [&] { return create_baker(std::move(device)); });
+  auto baker_ready = std::async(std::launch::async, [&] { return create_baker(std::move(device)); });
   std::optional<Progress> progress(std::in_place, !common.quiet);
   APPLIQUE_TRY(SolvedJob solved, solve_job(job, show_stages(*progress, 0, solve_share)));
   ReportInput input;

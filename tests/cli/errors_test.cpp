@@ -170,6 +170,7 @@ TEST_F(ErrorsTest, OutputsThatWouldDestroyFiles) {
   expect_failure(good_job(), 4, {"'image.png' is an input"}, "bake job.json -o out.glb --preview image.png");
   expect_failure(good_job(), 4, {"'r.json' would be written twice"},
                  "check job.json --report r.json --dump-region r.json");
+  expect_failure(good_job(), 4, {"'model.glb' is an input"}, "bake job.json -o model.glb");
   expect_failure(good_job(), 4, {"'image.png' is an input"}, "render image.png -o image.png");
   EXPECT_EQ(folder_.read("image.png"), image);
 }

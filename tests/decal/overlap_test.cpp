@@ -122,6 +122,33 @@ TEST(Overlap, StopsAtItselfUnlessAllowed) {
   EXPECT_LT(allowed->quality.l2_stretch, 1.001);
 }
 
+/// Nothing says which end of a band is to lie on top when one feature pins it: it is the same one everywhere.
+TEST(Overlap, OneEndOfABandPinnedOnceLiesOnTopAsAWhole) {
+  const SurfaceMesh torus = shapes::torus(128, 48, 1, 0.4).weld();
+  for (const bool upright : {false, true}) {
+    constexpr double length = 1300, width = 120;
+    const ImageFrame frame = upright ? ImageFrame{width, length} : ImageFrame{length, width};
+    const double w = frame.width, h = frame.height;
+    DecalInput input{"test", *Region::from_contour({{0, 0}, {w, 0}, {w, h}, {0, h}}, frame), {}, {}};
+    input.features.push_back({{w / 2, h / 2}, shapes::nearest(torus, {1.4, 0, 0}), 0});
+    const double unit = 2 * pi * 1.4 / 1000;  // of a pixel
+    input.lone = LoneFrame{w * unit, upright ? Vec3(0, 1, 0) : Vec3(0, 0, 1)};
+    SolveOptions options;
+    options.overlap = Overlap::allow;
+    const auto map = solve_decal(torus, input, options);
+    ASSERT_TRUE(map.has_value()) << map.error().message;
+    expect_exact_and_unfolded(*map);
+    const auto overlaps = stacks(*map);
+    EXPECT_GT(overlaps.size(), 100U);
+    for (const auto& stack : overlaps) {
+      ASSERT_EQ(stack.size(), 2U);
+      const Vec2 a = image_middle(*map, stack[0]), b = image_middle(*map, stack[1]);
+      EXPECT_EQ(upright ? a.imag() < b.imag() : a.real() < b.real(),
+                map->sheet[stack[0]] < map->sheet[stack[1]]);
+    }
+  }
+}
+
 /// A loop on the unit sphere that crosses itself near (0, 0, 1): the ends of the parameter [0, 1] stick out.
 Vec3 loop(double t) {
   const double s = (2 * t - 1) * 1.25 * pi;  // from -225 to 225 degrees round a circle of radius 0.55
@@ -129,8 +156,8 @@ Vec3 loop(double t) {
   return Vec3(along, across, std::sqrt(1 - along * along - across * across));
 }
 
-/// A band of 1400 x 200 pixels over a closed surface, of `length` in all, pinned at its middle and at a quarter of a
-/// turn of `radius` to either side.
+/// A band of 1400 x 200 pixels over a closed surface, of `length` in all, pinned at its middle and at a
+/// quarter of a turn of `radius` to either side.
 DecalInput band(const SurfaceMesh& surface, double radius, const std::function<Vec3(double)>& around) {
   constexpr ImageFrame frame{1400, 200};
   Region region = *Region::from_contour({{0, 0}, {1400, 0}, {1400, 200}, {0, 200}}, frame);
@@ -154,8 +181,7 @@ std::vector<ClosedCase> closed_cases() {
   const auto equator = [](double a) { return Vec3(std::cos(a), std::sin(a), 0); };
   DecalInput on_sphere = band(sphere, 1, equator);
   DecalInput on_torus = band(torus, 1.4, equator);
-  DecalInput on_cylinder =
-      band(cylinder, 1, [](double a) { return Vec3(std::cos(a), std::sin(a), 2.02); });
+  DecalInput on_cylinder = band(cylinder, 1, [](double a) { return Vec3(std::cos(a), std::sin(a), 2.02); });
   cases.push_back({"sphere", std::move(sphere), std::move(on_sphere)});
   cases.push_back({"torus", std::move(torus), std::move(on_torus)});
   cases.push_back({"cylinder", std::move(cylinder), std::move(on_cylinder)});

@@ -131,7 +131,7 @@ TEST(SymmetricDirichlet, FindsTheIsometryOfAPlane) {
   const Disc d(shapes::plane(12, 9, 2, 1, 0.3));
   const DiscGeometry geometry = measure_disc(d.disc);
   const std::vector<Vec2> plane =
-      relax_symmetric_dirichlet(geometry, embed_on_circle(geometry), {1000, 1e-13});
+      relax_symmetric_dirichlet(geometry, embed_on_circle(geometry), {1, 1000, 1e-13});
   EXPECT_EQ(count_flips(geometry, plane), 0u);
   EXPECT_LT(length_error(geometry, plane), 1e-4);
 }
@@ -163,6 +163,48 @@ TEST(Embed, IsometricHasLessStretchThanConformalAndNoFlips) {
   EXPECT_LT(l2_stretch(geometry, isometric.plane) - 1, 0.1 * (l2_stretch(geometry, conformal.plane) - 1));
   EXPECT_LT(l2_stretch(geometry, isometric.plane),
             l2_stretch(geometry, relax_arap(geometry, conformal.plane)));
+}
+
+/// Mean over the disc of s1 / s2, and of the larger of s1 s2 and its inverse.
+struct Distortion {
+  double angle = 0, area = 0;
+};
+
+Distortion distortion(const DiscGeometry& disc, const std::vector<Vec2>& plane) {
+  double mapped = 0;
+  for (const auto& f : disc.faces)
+    mapped += 0.5 * cross(plane[f[1]] - plane[f[0]], plane[f[2]] - plane[f[0]]);
+  Distortion sum;
+  for (std::size_t t = 0; t < disc.faces.size(); ++t) {
+    const auto corner = disc.flat(t);
+    const auto& f = disc.faces[t];
+    const double area = 0.5 * cross(corner[1] - corner[0], corner[2] - corner[0]);
+    const double ratio =
+        0.5 * cross(plane[f[1]] - plane[f[0]], plane[f[2]] - plane[f[0]]) / mapped * disc.area / area;
+    Vec2 a = 0, b = 0;
+    for (int k = 0; k < 3; ++k) {
+      const Vec2 hat = Vec2(0, 0.25) * (corner[(k + 2) % 3] - corner[(k + 1) % 3]) / area;
+      a += plane[f[k]] * std::conj(hat);
+      b += plane[f[k]] * hat;
+    }
+    sum.angle += area / disc.area * (std::abs(a) + std::abs(b)) / (std::abs(a) - std::abs(b));
+    sum.area += area / disc.area * std::max(ratio, 1 / ratio);
+  }
+  return sum;
+}
+
+TEST(Embed, ANumberLiesBetweenTheEnergies) {
+  const Disc d(shapes::bump(32, 1.2, 0.3));
+  const DiscGeometry geometry = measure_disc(d.disc);
+  Distortion before = distortion(geometry, embed_disc(geometry, {Energy::conformal}).plane);
+  for (const double isometry : {0.02, 0.1, 0.5, 1.0}) {
+    const Embedding embedding = embed_disc(geometry, {Energy{isometry}});
+    EXPECT_EQ(embedding.flips, 0u);
+    const Distortion now = distortion(geometry, embedding.plane);
+    EXPECT_GT(now.angle, before.angle) << isometry;
+    EXPECT_LT(now.area, before.area) << isometry;
+    before = now;
+  }
 }
 
 /// A cap far beyond a hemisphere, where ARAP folds: the result must still turn nothing over.

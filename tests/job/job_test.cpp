@@ -102,6 +102,28 @@ TEST_F(JobTest, ReadsEveryField) {
   EXPECT_TRUE(std::holds_alternative<RectangleRegion>(job->decals[2].region));
 }
 
+TEST_F(JobTest, EnergyMayBeANumber) {
+  json valid = valid_job();
+  valid["decals"][0]["energy"] = 0.25;
+  const auto job = load(valid);
+  ASSERT_TRUE(job) << job.error().message;
+  EXPECT_EQ(job->decals[0].energy, Energy{0.25});
+  for (const json& wrong : {json(1.5), json(-0.1), json("stiff")}) {
+    valid["decals"][0]["energy"] = wrong;
+    const auto refused = load(valid);
+    ASSERT_FALSE(refused);
+    EXPECT_NE(refused.error().message.find("/decals/0/energy"), std::string::npos) << refused.error().message;
+    EXPECT_NE(refused.error().message.find("conformal"), std::string::npos) << refused.error().message;
+  }
+}
+
+TEST_F(JobTest, ANameGivenTwiceIsAnError) {
+  const auto job = load_text(R"({"version": 1, "version": 1, "model": "m.glb", "decals": []})");
+  ASSERT_FALSE(job);
+  EXPECT_EQ(job.error().code, ErrorCode::json_invalid);
+  EXPECT_NE(job.error().message.find("\"version\" is given twice"), std::string::npos) << job.error().message;
+}
+
 TEST_F(JobTest, LeavesOutWhatMayBeLeftOut) {
   const auto job = load(valid_job());
   ASSERT_TRUE(job) << job.error().message;

@@ -28,6 +28,7 @@ constexpr double rough_tolerance = 1e-3;
 
 Embedding descend(const DiscGeometry& disc, const EmbedOptions& options, const std::vector<Vec2>& start) {
   SymmetricDirichletOptions descent;
+  descent.isometry = options.energy.isometry;
   if (options.rough) descent.tolerance = rough_tolerance;
   Embedding embedding{relax_symmetric_dirichlet(disc, start, descent), EmbeddingRung::isometric, 0};
   embedding.flips = count_flips(disc, embedding.plane);
@@ -37,7 +38,7 @@ Embedding descend(const DiscGeometry& disc, const EmbedOptions& options, const s
 }  // namespace
 
 Embedding embed_disc(const DiscGeometry& disc, const EmbedOptions& options, const std::vector<Vec2>& start) {
-  if (options.energy == Energy::isometric && !start.empty() && count_flips(disc, start) == 0)
+  if (options.energy != Energy::conformal && !start.empty() && count_flips(disc, start) == 0)
     return descend(disc, options, start);
   Embedding embedding{flatten_boundary_first(disc), EmbeddingRung::conformal, 0};
   if (!finite(embedding.plane) || (embedding.flips = count_flips(disc, embedding.plane)) > 0) {

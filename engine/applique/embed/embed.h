@@ -6,8 +6,16 @@
 
 namespace applique {
 
-/// What an embedding keeps: lengths as well as angles, or angles only.
-enum class Energy { isometric, conformal };
+/// What an embedding keeps: 0 angles only, 1 lengths as well, between them a blend
+/// (relax_symmetric_dirichlet).
+struct Energy {
+  double isometry = 1;
+
+  static const Energy isometric, conformal;
+  bool operator==(const Energy&) const = default;
+};
+inline constexpr Energy Energy::isometric{1};
+inline constexpr Energy Energy::conformal{0};
 
 /// Which step of the ladder the embedding came from.
 enum class EmbeddingRung {

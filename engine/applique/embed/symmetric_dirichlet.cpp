@@ -2,77 +2,53 @@
 
 #include <algorithm>
 #include <cmath>
-#include <deque>
 #include <limits>
 
 #include <Eigen/SparseCholesky>
 
 #include "applique/embed/collapse.h"
+#include "applique/embed/lbfgs.h"
+#include "applique/embed/triangle_energy.h"
 
 namespace applique {
 namespace {
 
-using Points = Eigen::VectorXcd;
 using SparseMatrix = Eigen::SparseMatrix<double>;
 
-/// A triangle at rest: its area, and half the gradients of its corners' hat functions.
-struct RestTriangle {
-  double area;
-  std::array<Vec2, 3> hat;
-};
-
 std::vector<RestTriangle> rest_triangles(const DiscGeometry& disc) {
-  std::vector<RestTriangle> rest(disc.faces.size());
-  for (std::size_t t = 0; t < rest.size(); ++t) {
-    const auto corner = disc.flat(t);
-    rest[t].area = 0.5 * cross(corner[1] - corner[0], corner[2] - corner[0]);
-    for (int k = 0; k < 3; ++k)
-      rest[t].hat[k] = Vec2(0, 0.25) * (corner[(k + 2) % 3] - corner[(k + 1) % 3]) / rest[t].area;
-  }
+  std::vector<RestTriangle> rest;
+  for (std::size_t t = 0; t < disc.faces.size(); ++t) rest.emplace_back(disc.flat(t));
   return rest;
 }
 
-/// A triangle's map z -> a z + b conj(z): it stretches by |a| + |b| and |a| - |b|, and areas by the product.
-struct LinearMap {
-  Vec2 a = 0, b = 0;
+/// The energy of a unit of area, by how a triangle's map stretches it: the mean square of its two stretches,
+/// and their product `det` > 0. Isometric: the L2 stretch of the map and that of its inverse, each of which
+/// least when areas are kept as well as angles; conformal: of the one stretch over the other, and back.
+struct Distortion {
+  double isometry;
 
-  LinearMap(const RestTriangle& rest, const std::array<int, 3>& f, const Points& plane) {
-    for (int k = 0; k < 3; ++k) {
-      a += plane[f[k]] * std::conj(rest.hat[k]);
-      b += plane[f[k]] * rest.hat[k];
-    }
+  EnergyDensity operator()(double mean_square, double det) const {
+    if (!(det > 0)) return {std::numeric_limits<double>::infinity(), 0, 0};
+    const double inverse = 1 / det, conformity = 2 * (1 - isometry);
+    return {isometry * (mean_square * (1 + inverse * inverse) + det + inverse) +
+                conformity * mean_square * inverse,
+            isometry * (1 + inverse * inverse) + conformity * inverse,
+            isometry * (1 - inverse * inverse - 2 * mean_square * inverse * inverse * inverse) -
+                conformity * mean_square * inverse * inverse};
   }
 };
 
-/// The energy at `plane`, infinite unless all triangles keep their orientation, and its gradient.
-double energy(const DiscGeometry& disc, const std::vector<RestTriangle>& rest, const Points& plane,
-              Points& gradient) {
-  double sum = 0;
-  gradient.setZero(plane.size());
-  for (std::size_t t = 0; t < rest.size(); ++t) {
-    const auto& f = disc.faces[t];
-    const auto [a, b] = LinearMap(rest[t], f, plane);
-    const double det = std::norm(a) - std::norm(b), mean_square = std::norm(a) + std::norm(b);
-    if (!(det > 0)) return std::numeric_limits<double>::infinity();
-    const double spread = 1 + 1 / (det * det), squeeze = 2 * mean_square / (det * det * det);
-    sum += rest[t].area * mean_square * spread;
-    const Vec2 by_a = 2 * rest[t].area * (spread - squeeze) * a,
-               by_b = 2 * rest[t].area * (spread + squeeze) * b;
-    for (int k = 0; k < 3; ++k) gradient[f[k]] += by_a * rest[t].hat[k] + by_b * std::conj(rest[t].hat[k]);
-  }
-  return sum;
-}
-
-/// The slope of the energy along a stretch, over the stretch's distance from 1: how stiff a triangle is.
-double stiffness(double s) {
-  return (1 + 1 / s) * (1 + 1 / (s * s));
+/// How stiff a triangle is along a stretch `s`: the slope of the energy's parts there over s - 1.
+double stiffness(double s, double across, double isometry) {
+  const double inverse = 1 / s;
+  return isometry * (1 + inverse) * (1 + inverse + inverse * inverse) + 2 * (1 - isometry) * inverse / across;
 }
 
 /// The Laplacian that stands for the energy's Hessian; its pattern is built once.
 class WeightedLaplacian {
  public:
-  WeightedLaplacian(const DiscGeometry& disc, const std::vector<RestTriangle>& rest)
-      : disc_(disc), rest_(rest) {
+  WeightedLaplacian(const DiscGeometry& disc, const std::vector<RestTriangle>& rest, double isometry)
+      : disc_(disc), rest_(rest), isometry_(isometry) {
     const auto size = static_cast<Eigen::Index>(disc.vertices);
     std::vector<Eigen::Triplet<double>> pattern;
     pattern.reserve(6 * disc.faces.size());
@@ -89,10 +65,10 @@ class WeightedLaplacian {
   }
 
   /// Weighs the triangles by how `plane` stretches them; false when the matrix cannot be factored.
-  bool renew(const Points& plane) {
+  bool renew(const PlanePoints& plane) {
     std::fill_n(matrix_.valuePtr(), matrix_.nonZeros(), 0.0);
     for (std::size_t t = 0; t < rest_.size(); ++t)
-      add_triangle(t, LinearMap(rest_[t], disc_.faces[t], plane));
+      add_triangle(t, TriangleMap(rest_[t], disc_.faces[t], plane));
     // The energy does not see motions of the plane: a trace of the diagonal holds them.
     const double hold = 1e-8 * matrix_.diagonal().mean();
     for (Eigen::Index i = 0; i < matrix_.rows(); ++i) matrix_.coeffRef(i, i) += hold;
@@ -100,9 +76,9 @@ class WeightedLaplacian {
     return solver_.info() == Eigen::Success;
   }
 
-  [[nodiscard]] Points solve(const Points& right) const {
+  [[nodiscard]] PlanePoints solve(const PlanePoints& right) const {
     using Rows = Eigen::Matrix<double, Eigen::Dynamic, 2, Eigen::RowMajor>;
-    Points solved(right.size());
+    PlanePoints solved(right.size());
     Eigen::Map<Rows>(reinterpret_cast<double*>(solved.data()), right.size(), 2) =
         solver_.solve(Eigen::Map<const Rows>(reinterpret_cast<const double*>(right.data()), right.size(), 2));
     return solved;
@@ -122,9 +98,9 @@ class WeightedLaplacian {
     }
   }
 
-  void add_triangle(std::size_t t, const LinearMap& map) {
+  void add_triangle(std::size_t t, const TriangleMap& map) {
     const double a = std::abs(map.a), b = std::abs(map.b);
-    const double along = stiffness(a + b), across = stiffness(a - b);
+    const double along = stiffness(a + b, a - b, isometry_), across = stiffness(a - b, a + b, isometry_);
     // The direction of the larger stretch, as a square; any when both are the same.
     const Vec2 direction = b > 0 ? map.b * std::conj(map.a) / (a * b) : Vec2(0);
     const double both = 2 * rest_[t].area * (along + across);
@@ -139,46 +115,10 @@ class WeightedLaplacian {
 
   const DiscGeometry& disc_;
   const std::vector<RestTriangle>& rest_;
+  double isometry_;
   SparseMatrix matrix_;  // lower triangle
   std::vector<std::array<int, 6>> slots_;
   Eigen::SimplicialLDLT<SparseMatrix> solver_;
-};
-
-double inner(const Points& p, const Points& q) {
-  return p.dot(q).real();
-}
-
-/// The steps last taken, by which L-BFGS corrects the Laplacian (two-loop recursion, Nocedal 1980).
-class History {
- public:
-  void clear() { steps_.clear(); }
-
-  void add(Points step, Points change) {
-    const double curvature = inner(step, change);
-    if (!(curvature > 0)) return;
-    steps_.push_back({std::move(step), std::move(change), curvature});
-    if (steps_.size() > memory) steps_.pop_front();
-  }
-
-  [[nodiscard]] Points direction(const WeightedLaplacian& laplacian, Points gradient) const {
-    std::array<double, memory> share;
-    for (std::size_t i = steps_.size(); i-- > 0;) {
-      share[i] = inner(steps_[i].step, gradient) / steps_[i].curvature;
-      gradient -= share[i] * steps_[i].change;
-    }
-    Points direction = laplacian.solve(gradient);
-    for (std::size_t i = 0; i < steps_.size(); ++i)
-      direction += (share[i] - inner(steps_[i].change, direction) / steps_[i].curvature) * steps_[i].step;
-    return -direction;
-  }
-
- private:
-  static constexpr std::size_t memory = 5;
-  struct Step {
-    Points step, change;  ///< Of the places, and of the gradient.
-    double curvature;
-  };
-  std::deque<Step> steps_;
 };
 
 }  // namespace
@@ -190,12 +130,15 @@ std::vector<Vec2> relax_symmetric_dirichlet(const DiscGeometry& disc, const std:
   constexpr int most_steps = 10;    // on one Laplacian
   constexpr double outdated = 0.8;  // of the energy at which the Laplacian was weighted
   const std::vector<RestTriangle> rest = rest_triangles(disc);
-  Points at = Eigen::Map<const Points>(plane.data(), static_cast<Eigen::Index>(plane.size()));
-  Points gradient, next, next_gradient;
-  double value = energy(disc, rest, at, gradient);
+  const auto energy = [&](const PlanePoints& places, PlanePoints& slope) {
+    return triangle_energy(disc.faces, rest, places, Distortion{options.isometry}, slope);
+  };
+  PlanePoints at = Eigen::Map<const PlanePoints>(plane.data(), static_cast<Eigen::Index>(plane.size()));
+  PlanePoints gradient, next, next_gradient;
+  double value = energy(at, gradient);
   if (!std::isfinite(value)) return plane;
-  WeightedLaplacian laplacian(disc, rest);
-  History history;
+  WeightedLaplacian laplacian(disc, rest, options.isometry);
+  StepHistory history;
   double weighted_at = 0;
   int steps = most_steps, small = 0;
   for (int iteration = 0; iteration < options.max_iterations && small < 2; ++iteration) {
@@ -205,15 +148,16 @@ std::vector<Vec2> relax_symmetric_dirichlet(const DiscGeometry& disc, const std:
       weighted_at = value;
       steps = 0;
     }
-    const Points direction = history.direction(laplacian, gradient);
-    const double slope = inner(gradient, direction);
+    const PlanePoints direction =
+        history.direction([&](const PlanePoints& right) { return laplacian.solve(right); }, gradient);
+    const double slope = StepHistory::inner(gradient, direction);
     next = at + direction;
     double t =
         std::min(1.0, 0.9 * first_collapse(disc, {at.data(), plane.size()}, {next.data(), plane.size()}));
     double reached = std::numeric_limits<double>::infinity();
     for (int halving = 0; halving < most_halvings; ++halving, t *= 0.5) {
       next = at + t * direction;
-      reached = energy(disc, rest, next, next_gradient);
+      reached = energy(next, next_gradient);
       if (reached <= value + sufficient * t * slope) break;
     }
     if (!(reached < value)) {

@@ -82,8 +82,9 @@ shader::RenderFrame make_frame(std::span<const RenderMesh> meshes, const Camera&
       far = std::max(far, depth);
     }
   }
+  constexpr double nearest = 1e-5;  // of the farthest: depths are floats
   far = far > 0 ? 1.01 * far : 1;
-  near = std::clamp(0.99 * near, 1e-3 * far, 0.999 * far);
+  near = std::clamp(0.99 * near, nearest * far, 0.999 * far);
   const Eigen::Matrix4f matrix =
       view_projection(camera, static_cast<double>(options.width) / options.height, near, far).cast<float>();
 

@@ -4,6 +4,7 @@
 #include <array>
 #include <optional>
 
+#include <Eigen/Geometry>
 #include <Eigen/SparseCholesky>
 
 #include "applique/base/types.h"
@@ -85,6 +86,16 @@ FaceDepths spread_depths(const Patch& patch, const IdVector<PatchVertexId, Vec2>
     laplacian.setFromTriplets(entries.begin(), entries.end());
     solved = Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>>(laplacian).solve(right);
   }
+  // A lone feature leaves all open: the place along the image's longer side orders its ends, one of which
+  // then lies over the other as a whole.
+  Eigen::AlignedBox2d box;
+  for (const Vec2 z : image) box.extend(Eigen::Vector2d(z.real(), z.imag()));
+  const bool upright = box.sizes().y() > box.sizes().x();
+  const auto order_of_one = [&](PatchFaceId q) {
+    Vec2 sum = 0;
+    for (PatchVertexId v : patch.faces[q].vertices) sum += image[v];
+    return upright ? sum.imag() : sum.real();
+  };
   // Equal depths are to be equal to the bit, so that `order` decides.
   const bool level = std::all_of(features.begin(), features.end(),
                                  [&](const DepthFeature& f) { return f.depth == features[0].depth; });
@@ -92,7 +103,7 @@ FaceDepths spread_depths(const Patch& patch, const IdVector<PatchVertexId, Vec2>
   for (PatchFaceId q : ids<PatchFaceId>(patch.faces.size())) {
     const Eigen::RowVector2d value = fixed[q] ? *fixed[q] : Eigen::RowVector2d(solved.row(row[q]));
     depths.depth.push_back(level ? features[0].depth : value[0]);
-    depths.order.push_back(value[1]);
+    depths.order.push_back(features.size() > 1 ? value[1] : order_of_one(q));
   }
   return depths;
 }

@@ -20,7 +20,8 @@ struct DepthFeature {
 /// that take the features' depths at their faces and pass linearly from one to the next along the tree's
 /// edges. The paper fixes the features' faces alone, whose grip on the rest is lost as the mesh is refined.
 ///
-/// Where depths leave the order open, `order` settles it: the same with the features' numbers for depths.
+/// Where depths leave the order open, `order` settles it: the same with the features' numbers for depths, or
+/// with a lone feature the place in the image.
 struct FaceDepths {
   IdVector<PatchFaceId, double> depth;
   IdVector<PatchFaceId, double> order;

@@ -150,7 +150,7 @@ class Thickening {
   Seed finish(std::vector<PatchFaceId> feature_faces) && {
     const ImmersedDisc::Renumbering map = disc_.compact();
     for (PatchFaceId& q : feature_faces) q = map.faces[q];
-    Seed seed{std::move(disc_), std::move(feature_faces), {}, {}, 1};
+    Seed seed{std::move(disc_), std::move(feature_faces), {}, {}, 1, false};
     seed.image.resize(seed.disc.vertex_count());
     for (PatchVertexId v : ids<PatchVertexId>(map.vertices.size()))
       if (map.vertices[v].valid()) seed.image[map.vertices[v]] = image_[v];
@@ -205,20 +205,25 @@ class Thickening {
 }  // namespace
 
 tl::expected<Seed, SeedFailure> build_seed(BridgedSurface& surface, std::span<const SeedFeature> features,
-                                           std::span<const FeaturePair> tree) {
+                                           std::span<const FeaturePair> tree, Crossings crossings) {
   auto strands = lay_strands(surface.mesh(), features, tree);
   if (!strands) return tl::unexpected(strands.error());
   double extent = 0;
   for (const SeedFeature& feature : features)
     extent = std::max(extent, std::abs(feature.image - features[0].image));
   const double far = far_share * extent;
-  Thickening thickening(surface, features, count_sheets(surface.mesh(), *strands, far), far);
+  auto sheets = count_sheets(surface.mesh(), *strands, far);
+  const bool crossed =
+      std::any_of(sheets.begin(), sheets.end(), [](const auto& face) { return face.second > 1; });
+  if (crossings == Crossings::one_sheet) sheets.clear();
+  Thickening thickening(surface, features, std::move(sheets), far);
   std::vector<PatchFaceId> feature_faces(features.size());
   feature_faces[0] = PatchFaceId(0);
   for (const Strand& strand : *strands)
     feature_faces[strand.to] = thickening.add_strand(feature_faces[strand.from], strand);
   thickening.add_ring();
   Seed seed = std::move(thickening).finish(std::move(feature_faces));
+  seed.crossed = crossed;
   seed.paths.resize(tree.size());
   for (const Strand& strand : *strands) {
     std::vector<Vec3>& path = seed.paths[strand.edge];

@@ -18,7 +18,8 @@ struct Seed {
   std::vector<PatchFaceId> feature_faces;  ///< The patch face over each feature, pinned.
   std::vector<std::vector<Vec3>> paths;    ///< By edge of the tree, from feature to feature, scene units.
   IdVector<PatchVertexId, Vec2> image;     ///< Where about in the image the vertices are (§4.3).
-  std::uint32_t sheets = 1;                ///< How often the paths cover a face at most.
+  std::uint32_t sheets = 1;                ///< How often a face may be covered at most.
+  bool crossed = false;                    ///< Paths that are far apart in the image meet on the surface.
 };
 
 /// A feature as the seed sees it.
@@ -27,13 +28,18 @@ struct SeedFeature {
   Vec2 image;            ///< Plane units.
 };
 
+/// What paths that cross on the surface are: parts of the image that lie over one another there, or of one
+/// sheet all the same, whose features were moved past one another.
+enum class Crossings { overlap, one_sheet };
+
 /// `tree` spans the features. Paths that come near one another on the surface are one sheet, in which every
-/// face is covered once, unless they are far apart in the image: then each has a sheet of its own there.
-/// Fails, naming a pair, only when two features lie on parts that are not connected.
+/// face is covered once, unless they are far apart in the image: then, with Crossings::overlap, each has a
+/// sheet of its own there. Fails, naming a pair, only when two features lie on parts that are not connected.
 struct SeedFailure {
   FeaturePair disconnected;
 };
 tl::expected<Seed, SeedFailure> build_seed(BridgedSurface& surface, std::span<const SeedFeature> features,
-                                           std::span<const FeaturePair> tree);
+                                           std::span<const FeaturePair> tree,
+                                           Crossings crossings = Crossings::overlap);
 
 }  // namespace applique
