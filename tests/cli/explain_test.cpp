@@ -121,10 +121,12 @@ TEST_F(ExplainTest, StepsOfTheGrowthDiffer) {
   EXPECT_NE(first.rgba, second.rgba);
 }
 
-TEST_F(ExplainTest, DrawsThePapersMethodToo) {
-  write_job("paper");
-  for (const char* stage : {"region", "graph", "paths", "seed", "growth", "warp", "influence", "patch"})
-    EXPECT_LT(share_of(explain(stage), palette::white), 0.99) << stage;
+TEST_F(ExplainTest, DrawsTheOtherMethodsToo) {
+  for (const char* method : {"paper", "planar", "expmap", "stroke"}) {
+    write_job(method);
+    for (const char* stage : {"region", "graph", "paths", "seed", "growth", "warp", "influence", "patch"})
+      EXPECT_LT(share_of(explain(stage), palette::white), 0.99) << method << ", " << stage;
+  }
 }
 
 TEST_F(ExplainTest, TurnsDownWhatIsNotThere) {
