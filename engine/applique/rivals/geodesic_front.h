@@ -18,8 +18,8 @@ namespace applique {
 ///     u_q + the edge q -> r projected on q's tangent plane, at the edge's length, in q's axes.
 ///
 /// Its axes are those of the start that q descends from, turned by the smallest rotation from the normal
-/// there to the normal at q, as in the paper: exact on a sphere and on what is developable. Normals are
-/// weighted by area.
+/// there to the normal at q, as in the paper: parallel transport on spheres and cylinders, near it elsewhere.
+/// Normals are weighted by area.
 class GeodesicFront {
  public:
   /// From coordinates to the image.
