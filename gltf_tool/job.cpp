@@ -1,5 +1,6 @@
 #include "job.h"
 
+#include <algorithm>
 #include <map>
 
 #include <fmt/format.h>
@@ -74,6 +75,18 @@ Energy energy_of(const json& value) {
   return value == "conformal" ? Energy::conformal : Energy::isometric;
 }
 
+Method method_of(const std::string& name) {
+  return *std::find_if(all_methods.begin(), all_methods.end(),
+                       [&](Method method) { return name == name_of(method); });
+}
+
+PlanarLimits limits_of(const json& planar) {
+  PlanarLimits limits;
+  limits.depth = planar.value("depth", limits.depth);
+  limits.normal_limit = planar.value("normal_limit", limits.normal_limit);
+  return limits;
+}
+
 DecalJob decal_of(const json& decal, const std::filesystem::path& folder) {
   DecalJob out;
   out.name = decal["name"].get<std::string>();
@@ -89,7 +102,10 @@ DecalJob decal_of(const json& decal, const std::filesystem::path& folder) {
   out.blend = blend_of(decal.value("blend", "normal"));
   out.output = decal.value("output", "bake") == "overlay" ? DecalOutput::overlay : DecalOutput::bake;
   if (decal.contains("offset")) out.offset = decal["offset"].get<double>();
-  out.method = decal.value("method", "applique") == "paper" ? Method::paper : Method::applique;
+  out.method = method_of(decal.value("method", name_of(out.method)));
+  if (decal.contains("planar")) out.planar = limits_of(decal["planar"]);
+  if (decal.contains("expmap") && decal["expmap"].value("parents", "upwind") == "one")
+    out.parents = Parents::one;
   if (decal.contains("energy")) out.energy = energy_of(decal["energy"]);
   out.overlap = decal.value("overlap", "stop") == "allow" ? Overlap::allow : Overlap::stop;
   return out;
@@ -109,6 +125,21 @@ Result<void> check_names(const std::vector<DecalJob>& decals, const std::string&
   return {};
 }
 
+/// Options of a method go with that method.
+Result<void> check_method_options(const json& decals, const std::string& file) {
+  for (std::size_t i = 0; i < decals.size(); ++i) {
+    const std::string method = decals[i].value("method", name_of(Method::applique));
+    for (const char* options : {name_of(Method::planar), name_of(Method::expmap)})
+      if (decals[i].contains(options) && method != options)
+        return fail(
+            ErrorCode::schema_violation,
+            fmt::format("{0}: /decals/{1}/{2}: found options of the method \"{2}\" on decal '{3}', whose "
+                        "method is \"{4}\", expected \"method\": \"{2}\" beside them",
+                        file, i, options, decals[i]["name"].get<std::string>(), method));
+  }
+  return {};
+}
+
 }  // namespace
 
 Result<Job> load_job(const std::filesystem::path& path) {
@@ -116,6 +147,7 @@ Result<Job> load_job(const std::filesystem::path& path) {
   const std::string file = path.filename().string();
   APPLIQUE_TRY(const json document, parse_json({bytes.begin(), bytes.end()}, file));
   APPLIQUE_CHECK(check_schema(document, job_schema(), file));
+  APPLIQUE_CHECK(check_method_options(document["decals"], file));
 
   Job job;
   job.path = path;

@@ -51,6 +51,8 @@ struct DecalJob {
   DecalOutput output = DecalOutput::bake;
   std::optional<double> offset;  ///< Of an overlay, scene units, >= 0; left out: default_offset().
   Method method = Method::applique;
+  PlanarLimits planar;                ///< Of Method::planar.
+  Parents parents = Parents::upwind;  ///< Of Method::expmap.
   Energy energy = Energy::isometric;
   Overlap overlap = Overlap::stop;
 };
@@ -64,7 +66,8 @@ struct Job {
 };
 
 /// Reads and validates a job file. Errors: file_unreadable, json_invalid (line and column), schema_violation
-/// (JSON pointer, what was found, what was expected; also two decals with one name).
+/// (JSON pointer, what was found, what was expected; also two decals with one name, and options of a method
+/// that the decal does not use).
 Result<Job> load_job(const std::filesystem::path& path);
 
 }  // namespace applique

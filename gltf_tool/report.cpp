@@ -24,6 +24,8 @@ const char* name_of(Coverage status) {
       return "clipped_by_cover";
     case Coverage::clipped_closed:
       return "clipped_closed";
+    case Coverage::clipped_by_limits:
+      return "clipped_by_limits";
     case Coverage::not_converged:
       return "not_converged";
   }
@@ -79,7 +81,7 @@ Json decal_of(const SolvedDecal& decal, const std::optional<TexelDensity>& densi
   out["name"] = decal.job.name;
   out["image"] = decal.job.image.string();
   out["output"] = decal.job.output == DecalOutput::bake ? "bake" : "overlay";
-  out["method"] = decal.job.method == Method::paper ? "paper" : "applique";
+  out["method"] = name_of(decal.job.method);
   out["coverage_status"] = name_of(map.status);
   out["coverage"] = quality.coverage;
   out["area"] = quality.area;

@@ -144,6 +144,8 @@ Result<void> solve_geometry(const Model& model, SurfaceCache& surfaces, SolvedDe
 
   SolveOptions options;
   options.method = decal.job.method;
+  options.planar = decal.job.planar;
+  options.parents = decal.job.parents;
   options.energy = decal.job.energy;
   options.overlap = decal.job.overlap;
   if (traced) options.trace = &decal.trace;

@@ -20,6 +20,7 @@
 #include "applique/patch/sheets.h"
 #include "applique/region/clusters.h"
 #include "applique/region/influence.h"
+#include "applique/rivals/rival_solver.h"
 #include "applique/unfold.h"
 #include "applique/warp/build_warp.h"
 
@@ -30,7 +31,6 @@ constexpr std::uint32_t most_sheets = 16;
 constexpr double most_patch_cover = 1.3;      // of the region, by a patch that is to lie over itself
 constexpr double most_patch_area = 4;         // of a patch that may cover more, times the region's
 constexpr double linear_tolerance_px = 0.02;  // §5.1 of the design
-constexpr double least_coverage = 0.01;       // below it the result is of no use
 constexpr double few_changes = 0.03;          // of a patch's faces
 constexpr int trial_solves = 6;               // after them, groups stay
 constexpr int most_refreshes = 8;             // of the vertices' influence
@@ -57,15 +57,8 @@ Result<Similarity> lone_alignment(const SurfaceMesh& surface, const DecalInput& 
   if (normal.dot((own[1] - own[0]).cross(own[2] - own[0])) <= 0)
     normal = (own[1] - own[0]).cross(own[2] - own[0]);
   normal.normalize();
-  const Vec3 wanted = input.lone->up.stableNormalized();
-  const Vec3 up = wanted - wanted.dot(normal) * normal;
-  if (!(up.norm() > 1e-3))
-    return fail(
-        ErrorCode::size_missing,
-        fmt::format("decal '{}': \"up\" points along the surface's normal at the feature; give a direction "
-                    "along the surface",
-                    input.name));
-  const Vec3 y = up.normalized(), x = y.cross(normal);
+  APPLIQUE_TRY(const Vec3 y, lone_up(input, normal));
+  const Vec3 x = y.cross(normal);
   Vec2 derivative = 0;
   double total = 0;
   for (PatchFaceId q : near) {
@@ -80,9 +73,7 @@ Result<Similarity> lone_alignment(const SurfaceMesh& surface, const DecalInput& 
     total += 0.5 * twice_area;
   }
   derivative /= total;
-  const ImageFrame& frame = input.region.frame();
-  const double units_per_width = frame.width / frame.pixels_per_unit();
-  const Vec2 scale = units_per_width / input.lone->width / derivative;
+  const Vec2 scale = lone_scale(input) / derivative;
   return Similarity{scale, target - scale * feature};
 }
 
@@ -168,13 +159,7 @@ class Solver {
     Growth growth(seed.disc, std::move(seed.feature_faces), input_.region, seed.sheets);
     APPLIQUE_CHECK(grow(seed.disc, growth));
     finish(seed.disc, growth);
-    if (map_.quality.coverage < least_coverage)
-      return fail(ErrorCode::not_solved,
-                  fmt::format("decal '{}': only {:.2g} % of the region fits on the surface under it; make "
-                              "the image smaller if it is larger "
-                              "than the surface, or check the features' places",
-                              input_.name, 100 * map_.quality.coverage));
-    return {};
+    return check_coverage(input_, map_.quality.coverage);
   }
 
   Result<Seed> make_seed() {
@@ -301,10 +286,6 @@ class Solver {
                                       groups_.of);
   }
 
-  [[nodiscard]] std::string feature_range() const {
-    return fmt::format("0 to {}", input_.features.size() - 1);
-  }
-
   static Vec2 interpolate(const ImmersedDisc& disc, PatchFaceId q, const SurfacePoint& point,
                           const std::vector<Vec2>& plane) {
     Vec2 z = 0;
@@ -353,14 +334,7 @@ class Solver {
       const double settled = exactly ? 0 : few_changes * static_cast<double>(disc.faces().size());
       if (static_cast<double>(added + peeled) <= settled) {
         // Thin patches mislead: what they say of the features' order counts once the patch is grown.
-        if (mirrored_)
-          return fail(
-              ErrorCode::features_mirrored,
-              fmt::format(
-                  "decal '{}': the features {} run one way round in the image and the other way round on "
-                  "the surface, so that the image would have to be mirrored; swap the places of left and "
-                  "right, or mirror the image",
-                  input_.name, feature_range()));
+        if (mirrored_) return tl::unexpected(mirrored(input_));
         if (energy != options_.energy) {
           energy = options_.energy;
         } else if (padded) {
@@ -587,7 +561,7 @@ class Solver {
   }
 
   void warn() {
-    map_.warnings = quality_warnings(input_.name, map_, options_.overlap);
+    map_.warnings = quality_warnings(input_.name, map_, options_);
     const auto add = [&](const char* code, std::string message) {
       map_.warnings.push_back({code, fmt::format("decal '{}': {}", input_.name, message)});
     };
@@ -649,8 +623,25 @@ std::vector<double> DecalMap::influence_at(const std::array<PatchVertexId, 3>& c
   return at;
 }
 
+const char* name_of(Method method) {
+  switch (method) {
+    case Method::applique:
+      return "applique";
+    case Method::paper:
+      return "paper";
+    case Method::planar:
+      return "planar";
+    case Method::expmap:
+      return "expmap";
+    case Method::stroke:
+      return "stroke";
+  }
+  return "";
+}
+
 Result<DecalMap> solve_decal(const SurfaceMesh& surface, const DecalInput& input,
                              const SolveOptions& options) {
+  if (is_rival(options.method)) return solve_decal_as_rival(surface, input, options);
   if (options.method == Method::paper) return solve_decal_as_paper(surface, input, options);
   bool crossed = false;
   SolveTrace trace;  // Of the attempt that is kept.

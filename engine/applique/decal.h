@@ -13,6 +13,7 @@
 #include "applique/patch/patch.h"
 #include "applique/quality/map_quality.h"
 #include "applique/region/region.h"
+#include "applique/rivals/rival_options.h"
 #include "applique/solve_trace.h"
 #include "applique/surface/surface_mesh.h"
 #include "applique/warp/warp.h"
@@ -40,8 +41,13 @@ struct DecalInput {
   std::optional<LoneFrame> lone;  ///< Needed with one feature, ignored with more.
 };
 
-/// Who solves: the program's own solver, or the paper's algorithm (paper/paper_solver.h).
-enum class Method { applique, paper };
+/// Who solves: the program's own solver, the paper's algorithm (paper/paper_solver.h), or one of the decal
+/// methods before it, which meet one feature only (rivals/rival_solver.h).
+enum class Method { applique, paper, planar, expmap, stroke };
+inline constexpr std::array all_methods = {Method::applique, Method::paper, Method::planar, Method::expmap,
+                                           Method::stroke};
+/// As jobs and reports call it: "applique".
+const char* name_of(Method method);
 
 /// Whether the image may lie over itself on the surface more often than the paths between the features do.
 enum class Overlap {
@@ -53,8 +59,10 @@ struct SolveOptions {
   Method method = Method::applique;
   Energy energy = Energy::isometric;  ///< The paper's method is always conformal.
   Overlap overlap = Overlap::stop;
-  int max_solves = 60;          ///< Embeddings before giving up.
-  SolveTrace* trace = nullptr;  ///< Told what happened, when given.
+  PlanarLimits planar;                ///< Of Method::planar.
+  Parents parents = Parents::upwind;  ///< Of Method::expmap.
+  int max_solves = 60;                ///< Embeddings before giving up.
+  SolveTrace* trace = nullptr;        ///< Told what happened, when given.
   bool check_patch =
       false;  ///< Asserts the patch's invariants after every change; builds for debugging always do.
 };

@@ -8,8 +8,9 @@
 namespace applique {
 namespace {
 
-constexpr double on_contour = 1e-9;  // plane units
-constexpr double coincident = 1e-6;  // of the region's diameter
+constexpr double on_contour = 1e-9;      // plane units
+constexpr double coincident = 1e-6;      // of the region's diameter
+constexpr double least_coverage = 0.01;  // below it the result is of no use
 
 std::string join(const std::vector<std::string>& names) {
   std::string text;
@@ -101,6 +102,41 @@ Result<void> check_input(const SurfaceMesh& surface, const DecalInput& input,
             prefix, parts.size(), text));
   }
   return {};
+}
+
+Result<Vec3> lone_up(const DecalInput& input, const Vec3& normal) {
+  const Vec3 wanted = input.lone->up.stableNormalized();
+  const Vec3 up = wanted - wanted.dot(normal) * normal;
+  if (!(up.norm() > 1e-3))
+    return fail(
+        ErrorCode::size_missing,
+        fmt::format("decal '{}': \"up\" points along the surface's normal at the feature; give a direction "
+                    "along the surface",
+                    input.name));
+  return up.normalized();
+}
+
+double lone_scale(const DecalInput& input) {
+  const ImageFrame& frame = input.region.frame();
+  return frame.width / frame.pixels_per_unit() / input.lone->width;
+}
+
+Error mirrored(const DecalInput& input) {
+  return {
+      ErrorCode::features_mirrored,
+      fmt::format("decal '{}': the features 0 to {} run one way round in the image and the other way round "
+                  "on the surface, so that the image would have to be mirrored; swap the places of left "
+                  "and right, or mirror the image",
+                  input.name, input.features.size() - 1)};
+}
+
+Result<void> check_coverage(const DecalInput& input, double coverage) {
+  if (coverage >= least_coverage) return {};
+  return fail(
+      ErrorCode::not_solved,
+      fmt::format("decal '{}': only {:.2g} % of the image fits on the surface under it; make it smaller, or "
+                  "check the features' places",
+                  input.name, 100 * coverage));
 }
 
 }  // namespace applique

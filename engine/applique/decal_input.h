@@ -23,4 +23,15 @@ std::vector<Vec2> targets_of(const DecalInput& input);
 Result<void> check_input(const SurfaceMesh& surface, const DecalInput& input,
                          const std::vector<Vec2>& targets, Overlap overlap = Overlap::stop);
 
+/// The direction of a lone feature's "up" along the surface, unit, where the unit normal is `normal`. Error:
+/// size_missing when it has none.
+Result<Vec3> lone_up(const DecalInput& input, const Vec3& normal);
+/// Plane units per scene unit at a lone feature.
+double lone_scale(const DecalInput& input);
+
+/// Says that the features run the other way round on the surface (features_mirrored).
+Error mirrored(const DecalInput& input);
+/// Turns down a map that shows next to nothing of the region (not_solved).
+Result<void> check_coverage(const DecalInput& input, double coverage);
+
 }  // namespace applique

@@ -4,6 +4,8 @@
 
 #include <fmt/format.h>
 
+#include "applique/rivals/rival_solver.h"
+
 namespace applique {
 namespace {
 
@@ -12,7 +14,8 @@ constexpr double high_stretch = 3;
 
 }  // namespace
 
-std::vector<Warning> quality_warnings(const std::string& name, const DecalMap& map, Overlap overlap) {
+std::vector<Warning> quality_warnings(const std::string& name, const DecalMap& map,
+                                      const SolveOptions& options) {
   std::vector<Warning> warnings;
   const auto add = [&](const char* code, std::string message) {
     warnings.push_back({code, fmt::format("decal '{}': {}", name, message)});
@@ -27,14 +30,22 @@ std::vector<Warning> quality_warnings(const std::string& name, const DecalMap& m
       break;
     case Coverage::clipped_by_cover:
       add("clipped_by_cover",
-          fmt::format(
-              "the region meets itself on the surface and stops there; {:.2f} % of it is shown{}", percent,
-              overlap == Overlap::stop ? "; \"overlap\": \"allow\" on the decal lets it go on over itself"
-                                       : ""));
+          fmt::format("the region meets itself on the surface and stops there; {:.2f} % of it is shown{}",
+                      percent,
+                      options.overlap == Overlap::stop && !is_rival(options.method)
+                          ? "; \"overlap\": \"allow\" on the decal lets it go on over itself"
+                          : ""));
       break;
     case Coverage::clipped_closed:
       add("clipped_closed",
           fmt::format("the region goes all the way round the surface; {:.2f} % of it is shown", percent));
+      break;
+    case Coverage::clipped_by_limits:
+      add("clipped_by_limits",
+          fmt::format(
+              "the surface leaves the projection's depth or normal limit inside the region; {:.2f} % of "
+              "it is shown",
+              percent));
       break;
     case Coverage::not_converged:
       add("not_converged",
@@ -43,17 +54,21 @@ std::vector<Warning> quality_warnings(const std::string& name, const DecalMap& m
   }
   if (map.quality.flipped_plane + map.quality.flipped_image > 0)
     add("flipped_triangles",
-        fmt::format(
-            "{} triangles are turned over; move the features nearer to where the image wants them, or add "
-            "some",
-            std::max(map.quality.flipped_plane, map.quality.flipped_image)));
+        fmt::format("{} triangles are turned over; {}",
+                    std::max(map.quality.flipped_plane, map.quality.flipped_image),
+                    is_rival(options.method)
+                        ? "make it smaller, or leave out \"method\""
+                        : "move the features nearer to where the image wants them, or add some"));
   // The exact warp of one sheet cannot: what its triangles' corners measure is then how much it bends.
   const bool one_sheet = map.sheets == 1 && map.groups == 1 && map.warp.steps > 0;
   if (map.quality.coverage > most_coverage && !one_sheet)
     add("overlapping_map",
         fmt::format("parts of the region land on the surface more than once ({:.2f} % in all): the "
-                    "features pull the image over itself; check that none are swapped",
-                    percent));
+                    "{}",
+                    percent,
+                    is_rival(options.method)
+                        ? "map folds; make it smaller, or leave out \"method\""
+                        : "features pull the image over itself; check that none are swapped"));
   if (map.quality.l2_stretch > high_stretch)
     add("high_stretch",
         fmt::format("the image is stretched {:.1f} times as much as need be (L2); make it smaller for "

@@ -118,6 +118,54 @@ const ModelPart& part_named(const Model& model, const std::string& name) {
   throw std::runtime_error("no part " + name);
 }
 
+TEST_F(BakeTest, PutsItThereByEveryRival) {
+  for (const char* method : {"planar", "expmap", "stroke"}) {
+    SCOPED_TRACE(method);
+    json job = job_at(-2, 0);
+    job["decals"][0]["method"] = method;
+    const CommandResult result = bake(job);
+    ASSERT_EQ(result.status, 0) << result.err;
+    const json decal = valid_report()["decals"][0];
+    EXPECT_EQ(decal["method"], method);
+    EXPECT_EQ(decal["coverage_status"], "covered");
+    EXPECT_EQ(decal["warnings"], json::array());
+    const auto model = load_model(folder_ / "out.glb");
+    ASSERT_TRUE(model) << model.error().message;
+    const auto texture =
+        load_model_image(*model, *model->materials[*part_named(*model, "Left").material].image);
+    ASSERT_TRUE(texture);
+    expect_quarters(*texture, &texture_);
+  }
+}
+
+TEST_F(BakeTest, LaysARivalOverTheModelAsWell) {
+  json job = job_at(-2, 0);
+  job["decals"][0].update({{"method", "expmap"}, {"output", "overlay"}});
+  const CommandResult result = bake(job, "-o out.glb --report report.json --preview preview.png");
+  ASSERT_EQ(result.status, 0) << result.err;
+  EXPECT_EQ(valid_report()["decals"][0]["output"], "overlay");
+  EXPECT_TRUE(load_model(folder_ / "out.glb"));
+}
+
+TEST_F(BakeTest, ReportsWhatARivalMissesAndLeavesOut) {
+  json job = job_at(-2, 0);
+  // A third feature that is off: the nearest to the middle is met.
+  job["decals"][0]["features"].push_back({{"image", {32, 30}}, {"position", {-2, 0.1, 0}}});
+  for (const char* method : {"planar", "expmap", "stroke"}) {
+    job["decals"][0]["method"] = method;
+    folder_.write("job.json", job);
+    const CommandResult checked = folder_.run("check job.json --report report.json");
+    ASSERT_EQ(checked.status, 0) << checked.err;
+    const json decal = valid_report()["decals"][0];
+    EXPECT_LT(decal["features"][2]["residual_px"], 1e-9);
+    EXPECT_GT(decal["features"][0]["residual_px"], 1);
+    EXPECT_EQ(decal["warnings"][0]["code"], "features_missed");
+  }
+  job["decals"][0].update({{"method", "planar"}, {"planar", {{"depth", 0.1}, {"normal_limit", 20}}}});
+  folder_.write("job.json", job);
+  EXPECT_EQ(folder_.run("check job.json").status, 0) << "flat, so within any limits";
+}
+
 TEST_F(BakeTest, PutsTheImageThereAndNowhereElse) {
   const CommandResult result = bake(job_at(-2, 0));
   ASSERT_EQ(result.status, 0) << result.err;

@@ -127,6 +127,18 @@ TEST_F(ExplainTest, DrawsThePapersMethodToo) {
     EXPECT_LT(share_of(explain(stage), palette::white), 0.99) << stage;
 }
 
+TEST_F(ExplainTest, DrawsWhatTheRivalsHaveOfAMap) {
+  write_job("planar");
+  EXPECT_LT(share_of(explain("growth"), palette::white), 0.99);
+  const double pairs = share_of(explain("paths"), palette::blue);
+  write_job("expmap");
+  for (const char* stage : {"seed", "warp", "patch"})
+    EXPECT_LT(share_of(explain(stage), palette::white), 0.99) << stage;
+  write_job("stroke");
+  EXPECT_GT(share_of(explain("paths"), palette::blue), pairs + 0.2 * line_share)
+      << "the curve, on the model alone";
+}
+
 TEST_F(ExplainTest, TurnsDownWhatIsNotThere) {
   const auto run = [&](const std::string& arguments) {
     return folder_.run("explain job.json -o picture.png " + arguments);

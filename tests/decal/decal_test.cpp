@@ -350,7 +350,7 @@ TEST(DecalErrors, TurnDownAnImageFarLargerThanTheSurface) {
   const SurfaceMesh surface = shapes::plane(8, 8, 1, 1).weld();
   DecalInput lone = decal(surface, rectangle(), {{{256, 256}, {0.5, 0.5, 0}}});
   lone.lone = LoneFrame{1000, {0, 1, 0}};
-  expect_error(surface, lone, ErrorCode::not_solved, "make the image smaller");
+  expect_error(surface, lone, ErrorCode::not_solved, "make it smaller");
 }
 
 TEST(Decal, WarnsOfFeaturesThatPullTheImageOverItself) {

@@ -138,6 +138,30 @@ TEST_F(JobTest, LeavesOutWhatMayBeLeftOut) {
   EXPECT_EQ(decal.energy, Energy::isometric);
 }
 
+TEST_F(JobTest, ReadsTheOptionsOfItsMethod) {
+  json document = valid_job();
+  document["decals"][0].update({{"method", "planar"}, {"planar", {{"depth", 0.25}}}});
+  auto job = load(document);
+  ASSERT_TRUE(job) << job.error().message;
+  EXPECT_EQ(job->decals[0].method, Method::planar);
+  EXPECT_EQ(job->decals[0].planar.depth, 0.25);
+  EXPECT_EQ(job->decals[0].planar.normal_limit, PlanarLimits().normal_limit);
+
+  document["decals"][0].erase("planar");
+  document["decals"][0].update({{"method", "expmap"}, {"expmap", {{"parents", "one"}}}});
+  job = load(document);
+  ASSERT_TRUE(job) << job.error().message;
+  EXPECT_EQ(job->decals[0].method, Method::expmap);
+  EXPECT_EQ(job->decals[0].parents, Parents::one);
+
+  document["decals"][0].erase("expmap");
+  document["decals"][0]["method"] = "stroke";
+  job = load(document);
+  ASSERT_TRUE(job) << job.error().message;
+  EXPECT_EQ(job->decals[0].method, Method::stroke);
+  EXPECT_EQ(job->decals[0].parents, Parents::upwind);
+}
+
 TEST_F(JobTest, SyntaxErrorSaysLineAndColumn) {
   const auto job = load_text(std::string("{ \"version\": 1,\n  \"model\": \"a.glb\" \"decals\" }"));
   ASSERT_FALSE(job);
@@ -193,10 +217,24 @@ INSTANTIATE_TEST_SUITE_P(
               "job.json: /decals/0: found the unknown property 'opactiy', expected 'opacity'"},
         Fault{"/decals/0/blend", "\"add\"",
               "job.json: /decals/0/blend: found \"add\", expected \"normal\", \"multiply\" or \"screen\""},
-        Fault{"/decals/0/method", "\"lscm\"",
-              "job.json: /decals/0/method: found \"lscm\", expected \"applique\", or \"paper\": the paper's "
-              "own "
-              "algorithm, for comparison"},
+        Fault{
+            "/decals/0/method", "\"lscm\"",
+            "job.json: /decals/0/method: found \"lscm\", expected \"applique\", \"paper\" (the paper's own "
+            "algorithm, for comparison), \"planar\", \"expmap\" or \"stroke\" (simpler maps, which meet one "
+            "feature only)"},
+        Fault{"/decals/0/planar", R"({"depth": 1})",
+              "job.json: /decals/0/planar: found options of the method \"planar\" on decal 'tiger', whose "
+              "method "
+              "is \"applique\", expected \"method\": \"planar\" beside them"},
+        Fault{"/decals/0/expmap", R"({"parents": "one"})",
+              "job.json: /decals/0/expmap: found options of the method \"expmap\" on decal 'tiger', whose "
+              "method "
+              "is \"applique\", expected \"method\": \"expmap\" beside them"},
+        Fault{"/decals/0/expmap", R"({"parents": "two"})",
+              "job.json: /decals/0/expmap/parents: found \"two\", expected \"one\" or \"upwind\", the "
+              "neighbours "
+              "that a vertex takes its place from: the one on the shortest path, or all that are nearer "
+              "(default)"},
         Fault{
             "/decals/0/size", "0",
             "job.json: /decals/0/size: found 0, expected a number over 0, the image's width in scene units"},

@@ -11,6 +11,18 @@ Vec2 centroid(std::span<const Vec2> points) {
   return sum / static_cast<double>(points.size());
 }
 
+/// The best similarity of those that take one centre to the other.
+Similarity fit_about(Vec2 from_centre, Vec2 to_centre, std::span<const Vec2> from, std::span<const Vec2> to) {
+  Vec2 correlation = 0;
+  double spread = 0;
+  for (std::size_t k = 0; k < from.size(); ++k) {
+    correlation += std::conj(from[k] - from_centre) * (to[k] - to_centre);
+    spread += std::norm(from[k] - from_centre);
+  }
+  const Vec2 scale = correlation / spread;
+  return {scale, to_centre - scale * from_centre};
+}
+
 double residual(std::span<const Vec2> from, std::span<const Vec2> to) {
   const Similarity fit = fit_similarity(from, to);
   double sum = 0;
@@ -21,15 +33,11 @@ double residual(std::span<const Vec2> from, std::span<const Vec2> to) {
 }  // namespace
 
 Similarity fit_similarity(std::span<const Vec2> from, std::span<const Vec2> to) {
-  const Vec2 from_centre = centroid(from), to_centre = centroid(to);
-  Vec2 correlation = 0;
-  double spread = 0;
-  for (std::size_t k = 0; k < from.size(); ++k) {
-    correlation += std::conj(from[k] - from_centre) * (to[k] - to_centre);
-    spread += std::norm(from[k] - from_centre);
-  }
-  const Vec2 scale = correlation / spread;
-  return {scale, to_centre - scale * from_centre};
+  return fit_about(centroid(from), centroid(to), from, to);
+}
+
+Similarity fit_similarity_about(std::size_t fixed, std::span<const Vec2> from, std::span<const Vec2> to) {
+  return fit_about(from[fixed], to[fixed], from, to);
 }
 
 Similarity fit_by_edges(std::span<const Vec2> from, std::span<const Vec2> to,

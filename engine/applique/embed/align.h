@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <span>
 
@@ -19,8 +20,11 @@ struct Similarity {
 /// design). Exact for two points. At least two points, not all `from` equal.
 Similarity fit_similarity(std::span<const Vec2> from, std::span<const Vec2> to);
 
-/// The same with the edges' mean length in place of the best scale: for places that a similarity does not
-/// bring near to one another, such as those of a ribbon that is a loop in one plane and straight in the
+/// The same among the similarities that are exact at point `fixed`; not all `from` equal it.
+Similarity fit_similarity_about(std::size_t fixed, std::span<const Vec2> from, std::span<const Vec2> to);
+
+/// fit_similarity with the edges' mean length in place of the best scale: for places that a similarity does
+/// not bring near to one another, such as those of a ribbon that is a loop in one plane and straight in the
 /// other. The edges join all points.
 Similarity fit_by_edges(std::span<const Vec2> from, std::span<const Vec2> to,
                         std::span<const std::array<std::uint32_t, 2>> edges);

@@ -194,11 +194,7 @@ class PaperSolver {
     if (!std::all_of(plane.begin(), plane.end(), [](Vec2 z) { return std::isfinite(std::norm(z)); }))
       return fail(ErrorCode::not_solved,
                   fmt::format("decal '{}': the conformal embedding has no solution", input_.name));
-    if (is_mirrored(features_in(seed, plane), targets_))
-      return fail(ErrorCode::features_mirrored,
-                  fmt::format("decal '{}': the features run one way round in the image and the other way "
-                              "round on the surface; swap the places of left and right, or mirror the image",
-                              input_.name));
+    if (is_mirrored(features_in(seed, plane), targets_)) return tl::unexpected(mirrored(input_));
     return plane;
   }
 
@@ -281,7 +277,7 @@ class PaperSolver {
       map_.quality.feature_residual.push_back(std::abs(image_of_feature(seed, k) - targets_[k]) *
                                               input_.region.frame().pixels_per_unit());
     map_.status = coverage(seed);
-    for (Warning& warning : quality_warnings(input_.name, map_, options_.overlap))
+    for (Warning& warning : quality_warnings(input_.name, map_, options_))
       map_.warnings.push_back(std::move(warning));
   }
 

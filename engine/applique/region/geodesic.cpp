@@ -3,52 +3,21 @@
 #include <algorithm>
 #include <limits>
 #include <map>
-#include <utility>
 
 #include "applique/base/error.h"
 #include "applique/base/predicates.h"
+#include "applique/region/funnel.h"
 
 namespace applique {
 namespace {
 
-/// An edge of the sleeve as the path walks through it.
-struct Portal {
-  Vec2 left, right;
-};
-
-/// Length of the shortest path from `a` to `b` through the portals.
-double pull_tight(Vec2 a, Vec2 b, std::vector<Portal> portals) {
-  portals.push_back({b, b});
+double length_of(Vec2 a, Vec2 b, const std::vector<FunnelTurn>& turns) {
   double length = 0;
-  Vec2 apex = a, left = a, right = a;
-  std::size_t left_at = 0, right_at = 0;
-  for (std::size_t i = 0; i < portals.size(); ++i) {
-    const auto turn = [&](Vec2 corner, std::size_t at) {
-      length += std::abs(corner - apex);
-      apex = left = right = corner;
-      i = at;  // Go on after the portal where the corner was found.
-      left_at = right_at = at;
-    };
-    const Portal& portal = portals[i];
-    if (right == apex || orientation(apex, right, portal.right) >= 0) {
-      if (right == apex || left == apex || orientation(apex, left, portal.right) < 0) {
-        right = portal.right;
-        right_at = i;
-      } else {
-        turn(left, left_at);
-        continue;
-      }
-    }
-    if (left == apex || orientation(apex, left, portal.left) <= 0) {
-      if (left == apex || right == apex || orientation(apex, right, portal.left) > 0) {
-        left = portal.left;
-        left_at = i;
-      } else {
-        turn(right, right_at);
-      }
-    }
+  for (const FunnelTurn& turn : turns) {
+    length += std::abs(turn.at - a);
+    a = turn.at;
   }
-  return length + std::abs(b - apex);
+  return length + std::abs(b - a);
 }
 
 }  // namespace
@@ -166,7 +135,8 @@ std::vector<double> InnerGeodesics::lengths(std::size_t source) const {
       portals.push_back({polygon_[triangles_[t].vertices[k]], polygon_[triangles_[t].vertices[(k + 1) % 3]]});
     }
     std::reverse(portals.begin(), portals.end());
-    result.push_back(pull_tight(points_[source], points_[target], std::move(portals)));
+    result.push_back(
+        length_of(points_[source], points_[target], pull_tight(points_[source], points_[target], portals)));
   }
   return result;
 }
