@@ -5,8 +5,7 @@
 #include <deque>
 #include <limits>
 
-#include <Eigen/SparseCholesky>
-
+#include "applique/base/laplacian_solver.h"
 #include "applique/embed/collapse.h"
 
 namespace applique {
@@ -85,7 +84,7 @@ class WeightedLaplacian {
       const int* last = matrix_.innerIndexPtr() + matrix_.outerIndexPtr()[column + 1];
       slots_[t][entry] = static_cast<int>(std::lower_bound(first, last, row) - matrix_.innerIndexPtr());
     });
-    solver_.analyzePattern(matrix_);
+    solver_.analyse(matrix_);
   }
 
   /// Weighs the triangles by how `plane` stretches them; false when the matrix cannot be factored.
@@ -96,17 +95,10 @@ class WeightedLaplacian {
     // The energy does not see motions of the plane: a trace of the diagonal holds them.
     const double hold = 1e-8 * matrix_.diagonal().mean();
     for (Eigen::Index i = 0; i < matrix_.rows(); ++i) matrix_.coeffRef(i, i) += hold;
-    solver_.factorize(matrix_);
-    return solver_.info() == Eigen::Success;
+    return solver_.renew(matrix_);
   }
 
-  [[nodiscard]] Points solve(const Points& right) const {
-    using Rows = Eigen::Matrix<double, Eigen::Dynamic, 2, Eigen::RowMajor>;
-    Points solved(right.size());
-    Eigen::Map<Rows>(reinterpret_cast<double*>(solved.data()), right.size(), 2) =
-        solver_.solve(Eigen::Map<const Rows>(reinterpret_cast<const double*>(right.data()), right.size(), 2));
-    return solved;
-  }
+  [[nodiscard]] Points solve(const Points& right) { return solver_.precondition(right); }
 
  private:
   /// Calls visit(face, entry, row, column) for the lower triangle of each face's 3 x 3 block.
@@ -141,7 +133,7 @@ class WeightedLaplacian {
   const std::vector<RestTriangle>& rest_;
   SparseMatrix matrix_;  // lower triangle
   std::vector<std::array<int, 6>> slots_;
-  Eigen::SimplicialLDLT<SparseMatrix> solver_;
+  LaplacianSolver solver_;
 };
 
 double inner(const Points& p, const Points& q) {
@@ -160,7 +152,7 @@ class History {
     if (steps_.size() > memory) steps_.pop_front();
   }
 
-  [[nodiscard]] Points direction(const WeightedLaplacian& laplacian, Points gradient) const {
+  [[nodiscard]] Points direction(WeightedLaplacian& laplacian, Points gradient) const {
     std::array<double, memory> share;
     for (std::size_t i = steps_.size(); i-- > 0;) {
       share[i] = inner(steps_[i].step, gradient) / steps_[i].curvature;

@@ -1,6 +1,7 @@
 #include "applique/patch/growth.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace applique {
 namespace {
@@ -213,13 +214,15 @@ ImmersedDisc::Glue Growth::glue(PatchFaceId q, int k, PatchPoints& points,
 
 std::size_t Growth::grow(PatchPoints& points, IdVector<PatchVertexId, char>& inside, double scale,
                          const Limits& limits) {
-  const std::size_t most = static_cast<std::size_t>(limits.growth * static_cast<double>(disc_.live_faces()));
+  const auto faces = static_cast<double>(disc_.live_faces());
+  const auto most = static_cast<std::size_t>(limits.growth * faces);
+  const int rings = std::max(limits.rings, static_cast<int>(limits.share * std::sqrt(faces)));
   note_cover();
   std::vector<PatchFaceId> candidates;
   candidates.reserve(disc_.faces().size());
   for (PatchFaceId q : ids<PatchFaceId>(disc_.faces().size())) candidates.push_back(q);
   std::size_t added = 0;
-  for (int ring = 0; ring < limits.rings && disc_.live_faces() < most && !candidates.empty(); ++ring) {
+  for (int ring = 0; ring < rings && disc_.live_faces() < most && !candidates.empty(); ++ring) {
     std::vector<PatchFaceId> fresh;
     for (const Side& side : front(points, inside, candidates)) {
       if (disc_.faces()[side.face].neighbours[side.edge].valid()) continue;  // zipped meanwhile

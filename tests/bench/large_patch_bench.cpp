@@ -1,0 +1,92 @@
+// Large patches, up to a million triangles: the solve by stage, and the solvers of Laplacians against one
+// another.
+
+#include <algorithm>
+#include <cmath>
+
+#include <benchmark/benchmark.h>
+
+#include "applique/base/laplacian_solver.h"
+#include "applique/base/stage_timer.h"
+#include "applique/decal.h"
+
+#include "support/laplacians.h"
+#include "support/shapes.h"
+
+namespace applique {
+namespace {
+
+constexpr int image_side = 512;
+constexpr double half_size = 0.92;  // of the image on the surface, which is two units wide
+
+/// One decal over most of a surface of gentle hills.
+DecalInput five_pins(const SurfaceMesh& surface) {
+  const auto region =
+      Region::from_contour({{0, 0}, {512, 0}, {512, 512}, {0, 512}}, {image_side, image_side});
+  DecalInput input{"large", *region, {}, {}};
+  for (const auto& [x, y] : {std::pair(130, 150), std::pair(380, 150), std::pair(256, 270),
+                             std::pair(180, 400), std::pair(340, 390)}) {
+    const double s = half_size * (2.0 * x / image_side - 1), t = half_size * (1 - 2.0 * y / image_side);
+    input.features.push_back({{double(x), double(y)}, shapes::nearest(surface, shapes::hills_at(s, t))});
+  }
+  return input;
+}
+
+void large_patch(benchmark::State& state) {
+  const SurfaceMesh surface = shapes::hills(static_cast<int>(state.range(0))).weld();
+  const DecalInput input = five_pins(surface);
+  for (auto _ : state) {
+    const auto map = solve_decal(surface, input);
+    if (!map) return state.SkipWithError(map.error().message.c_str());
+    state.counters["faces"] = static_cast<double>(map->patch.faces.size());
+    state.counters["solves"] = map->solves;
+    state.counters["flips"] = map->quality.flipped_plane + map->quality.flipped_image;
+    state.counters["seed"] = map->times.graph + map->times.seed;
+    state.counters["embed"] = map->times.embed;
+    state.counters["warp"] = map->times.warp;
+    state.counters["grow"] = map->times.grow;
+    state.counters["quality"] = map->times.quality;
+  }
+}
+// 10 thousand, 100 thousand and a million triangles under the image.
+BENCHMARK(large_patch)->Arg(77)->Arg(243)->Arg(769)->Unit(benchmark::kMillisecond)->Iterations(1)->MeasureProcessCPUTime();
+
+/// One system by either way: the seconds that the matrix takes, and those of both coordinates' solution.
+void solve_laplacian(benchmark::State& state, std::size_t most_factored) {
+  const Eigen::SparseMatrix<double> lower =
+      laplacians::cotangent(shapes::hills(static_cast<int>(state.range(0))),
+                            [](const Vec3& p) { return std::max(std::abs(p.x()), std::abs(p.y())) == 1; });
+  const Eigen::VectorXcd right = Eigen::VectorXcd::Random(lower.rows());
+  double compute = 0, solve = 0;
+  for (auto _ : state) {
+    LaplacianSolver solver({most_factored});
+    {
+      StageTimer timer(compute);
+      if (!solver.compute(lower)) return state.SkipWithError("singular");
+    }
+    StageTimer timer(solve);
+    benchmark::DoNotOptimize(solver.solve(right).data());
+  }
+  state.counters["unknowns"] = static_cast<double>(lower.rows());
+  state.counters["compute"] = benchmark::Counter(compute, benchmark::Counter::kAvgIterations);
+  state.counters["solve"] = benchmark::Counter(solve, benchmark::Counter::kAvgIterations);
+}
+BENCHMARK_CAPTURE(solve_laplacian, by_factors, ~std::size_t{0})
+    ->Arg(77)
+    ->Arg(128)
+    ->Arg(180)
+    ->Arg(243)
+    ->Arg(340)
+    ->Arg(769)
+    ->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(solve_laplacian, by_multigrid, std::size_t{0})
+    ->Arg(77)
+    ->Arg(128)
+    ->Arg(180)
+    ->Arg(243)
+    ->Arg(340)
+    ->Arg(769)
+    ->Unit(benchmark::kMillisecond);
+
+}  // namespace
+}  // namespace applique
