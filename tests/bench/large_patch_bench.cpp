@@ -10,31 +10,16 @@
 #include "applique/base/stage_timer.h"
 #include "applique/decal.h"
 
+#include "support/hills_decal.h"
 #include "support/laplacians.h"
 #include "support/shapes.h"
 
 namespace applique {
 namespace {
 
-constexpr int image_side = 512;
-constexpr double half_size = 0.92;  // of the image on the surface, which is two units wide
-
-/// One decal over most of a surface of gentle hills.
-DecalInput five_pins(const SurfaceMesh& surface) {
-  const auto region =
-      Region::from_contour({{0, 0}, {512, 0}, {512, 512}, {0, 512}}, {image_side, image_side});
-  DecalInput input{"large", *region, {}, {}};
-  for (const auto& [x, y] : {std::pair(130, 150), std::pair(380, 150), std::pair(256, 270),
-                             std::pair(180, 400), std::pair(340, 390)}) {
-    const double s = half_size * (2.0 * x / image_side - 1), t = half_size * (1 - 2.0 * y / image_side);
-    input.features.push_back({{double(x), double(y)}, shapes::nearest(surface, shapes::hills_at(s, t))});
-  }
-  return input;
-}
-
 void large_patch(benchmark::State& state) {
   const SurfaceMesh surface = shapes::hills(static_cast<int>(state.range(0))).weld();
-  const DecalInput input = five_pins(surface);
+  const DecalInput input = hills_decal(surface);
   for (auto _ : state) {
     const auto map = solve_decal(surface, input);
     if (!map) return state.SkipWithError(map.error().message.c_str());
@@ -49,7 +34,13 @@ void large_patch(benchmark::State& state) {
   }
 }
 // 10 thousand, 100 thousand and a million triangles under the image.
-BENCHMARK(large_patch)->Arg(77)->Arg(243)->Arg(769)->Unit(benchmark::kMillisecond)->Iterations(1)->MeasureProcessCPUTime();
+BENCHMARK(large_patch)
+    ->Arg(77)
+    ->Arg(243)
+    ->Arg(769)
+    ->Unit(benchmark::kMillisecond)
+    ->Iterations(1)
+    ->MeasureProcessCPUTime();
 
 /// One system by either way: the seconds that the matrix takes, and those of both coordinates' solution.
 void solve_laplacian(benchmark::State& state, std::size_t most_factored) {

@@ -57,13 +57,6 @@ VectorXd LaplacianSolver::solve(const VectorXd& right) {
   return solve(VectorXcd(right.cast<std::complex<double>>())).real();
 }
 
-VectorXcd LaplacianSolver::precondition(const VectorXcd& right) {
-  if (!multigrid_) return solve_by_factors(right);
-  VectorXcd solution(right.size());
-  multigrid_->cycle(right, solution);
-  return solution;
-}
-
 VectorXcd LaplacianSolver::solve_by_factors(const VectorXcd& right) const {
   using Pairs = Eigen::Matrix<double, Eigen::Dynamic, 2, Eigen::RowMajor>;
   VectorXcd solution(right.size());
@@ -75,11 +68,12 @@ VectorXcd LaplacianSolver::solve_by_factors(const VectorXcd& right) const {
 /// Preconditioned conjugate gradients (Hestenes and Stiefel 1952) from zero. The residual's product with its
 /// V-cycle is, up to the V-cycle's quality, the square of the error's energy norm.
 std::optional<VectorXcd> LaplacianSolver::iterate(const VectorXcd& right) {
-  VectorXcd solution = VectorXcd::Zero(right.size()), residual = right;
-  VectorXcd direction = precondition(residual);
-  double error = inner(residual, direction);
+  const Eigen::Index size = right.size();
+  VectorXcd solution = VectorXcd::Zero(size), residual = right, cycled(size), image(size);
+  multigrid_->cycle(residual, cycled);
+  VectorXcd direction = cycled;
+  double error = inner(residual, cycled);
   const double tolerated = options_.tolerance * options_.tolerance * error;
-  VectorXcd image(right.size());
   for (iterations_ = 0; iterations_ < options_.max_iterations; ++iterations_) {
     if (error <= tolerated) return solution;
     image.setZero();
@@ -88,10 +82,10 @@ std::optional<VectorXcd> LaplacianSolver::iterate(const VectorXcd& right) {
     if (!(curvature > 0)) return std::nullopt;
     solution += error / curvature * direction;
     residual -= error / curvature * image;
-    const VectorXcd preconditioned = precondition(residual);
-    const double next = inner(residual, preconditioned);
+    multigrid_->cycle(residual, cycled);
+    const double next = inner(residual, cycled);
     if (!(next >= 0)) return std::nullopt;
-    direction = preconditioned + next / error * direction;
+    direction = cycled + next / error * direction;
     error = next;
   }
   return std::nullopt;

@@ -36,8 +36,6 @@ class LaplacianSolver {
   /// Not finite when an iteration did not converge and the matrix cannot be factored either.
   [[nodiscard]] Eigen::VectorXcd solve(const Eigen::VectorXcd& right);
   [[nodiscard]] Eigen::VectorXd solve(const Eigen::VectorXd& right);
-  /// The solution, or one V-cycle towards it: the same symmetric linear map until the next `renew`.
-  [[nodiscard]] Eigen::VectorXcd precondition(const Eigen::VectorXcd& right);
   /// That the last `solve` took; 0 by factors.
   [[nodiscard]] int iterations() const { return iterations_; }
 

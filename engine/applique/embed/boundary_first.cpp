@@ -86,11 +86,11 @@ std::vector<Vec2> lay_out_boundary(const VectorXd& turning, const VectorXd& leng
 
 }  // namespace
 
-std::vector<Vec2> flatten_boundary_first(const DiscGeometry& disc) {
+std::vector<Vec2> flatten_boundary_first(const DiscGeometry& disc, const LaplacianSolverOptions& solving) {
   const Numbering n = number_vertices(disc);
   const auto boundary_count = static_cast<Eigen::Index>(disc.boundary.size());
   const LaplacianBlocks laplacian = assemble(disc, n);
-  LaplacianSolver solver;
+  LaplacianSolver solver(solving);
   if (n.interior_count > 0 && !solver.compute(laplacian.interior))
     return std::vector<Vec2>(disc.vertices, std::numeric_limits<double>::quiet_NaN());
 

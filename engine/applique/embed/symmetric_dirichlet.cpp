@@ -98,7 +98,7 @@ class WeightedLaplacian {
     return solver_.renew(matrix_);
   }
 
-  [[nodiscard]] Points solve(const Points& right) { return solver_.precondition(right); }
+  [[nodiscard]] Points solve(const Points& right) { return solver_.solve(right); }
 
  private:
   /// Calls visit(face, entry, row, column) for the lower triangle of each face's 3 x 3 block.
@@ -133,7 +133,9 @@ class WeightedLaplacian {
   const std::vector<RestTriangle>& rest_;
   SparseMatrix matrix_;  // lower triangle
   std::vector<std::array<int, 6>> slots_;
-  LaplacianSolver solver_;
+  // L-BFGS corrects the rest. With one V-cycle in place of a solution it takes twice the steps and stops
+  // short.
+  LaplacianSolver solver_{{.tolerance = 1e-2}};
 };
 
 double inner(const Points& p, const Points& q) {

@@ -29,20 +29,24 @@ Growth::Growth(ImmersedDisc& disc, std::vector<PatchFaceId> feature_faces, const
     : disc_(disc), feature_faces_(std::move(feature_faces)), region_(region), cover_limit_(cover_limit) {}
 
 IdVector<PatchVertexId, char> Growth::inside(const PatchPoints& points) const {
+  // A flood of the faces with a vertex inside. The fan of a vertex hangs together by edges at that vertex, so
+  // that it is enough to cross the edges that have such an end.
   IdVector<PatchVertexId, char> inside(disc_.vertex_count(), false);
-  std::vector<PatchVertexId> stack;
-  const auto visit = [&](PatchVertexId v) {
-    if (inside[v] || !region_.contains(points[v].image)) return;
-    inside[v] = true;
-    stack.push_back(v);
+  IdVector<PatchFaceId, char> seen(disc_.faces().size(), false);
+  std::vector<PatchFaceId> stack;
+  const auto visit = [&](PatchFaceId q) {
+    if (!q.valid() || seen[q]) return;
+    seen[q] = true;
+    stack.push_back(q);
   };
-  for (PatchFaceId q : feature_faces_)
-    for (PatchVertexId v : disc_.faces()[q].vertices) visit(v);
+  for (PatchFaceId q : feature_faces_) visit(q);
   while (!stack.empty()) {
-    const PatchVertexId v = stack.back();
+    const PatchFace& face = disc_.faces()[stack.back()];
     stack.pop_back();
-    for (PatchFaceId q : disc_.fan(v))
-      for (PatchVertexId w : disc_.faces()[q].vertices) visit(w);
+    const auto& v = face.vertices;
+    for (PatchVertexId w : v) inside[w] = inside[w] || region_.contains(points[w].image);
+    for (int k = 0; k < 3; ++k)
+      if (inside[v[(k + 1) % 3]] || inside[v[(k + 2) % 3]]) visit(face.neighbours[k]);
   }
   return inside;
 }
