@@ -35,9 +35,7 @@ void large_patch(benchmark::State& state) {
 }
 // 10 thousand, 100 thousand and a million triangles under the image.
 BENCHMARK(large_patch)
-    ->Arg(77)
-    ->Arg(243)
-    ->Arg(769)
+    ->ArgsProduct({{77, 243, 769}})
     ->Unit(benchmark::kMillisecond)
     ->Iterations(1)
     ->MeasureProcessCPUTime();
@@ -62,22 +60,12 @@ void solve_laplacian(benchmark::State& state, std::size_t most_factored) {
   state.counters["compute"] = benchmark::Counter(compute, benchmark::Counter::kAvgIterations);
   state.counters["solve"] = benchmark::Counter(solve, benchmark::Counter::kAvgIterations);
 }
-BENCHMARK_CAPTURE(solve_laplacian, by_factors, ~std::size_t{0})
-    ->Arg(77)
-    ->Arg(128)
-    ->Arg(180)
-    ->Arg(243)
-    ->Arg(340)
-    ->Arg(769)
-    ->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(solve_laplacian, by_multigrid, std::size_t{0})
-    ->Arg(77)
-    ->Arg(128)
-    ->Arg(180)
-    ->Arg(243)
-    ->Arg(340)
-    ->Arg(769)
-    ->Unit(benchmark::kMillisecond);
+void laplacian_sizes(benchmark::internal::Benchmark* benchmark) {
+  for (const int cells : {77, 128, 180, 243, 340, 769}) benchmark->Arg(cells);
+  benchmark->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime();
+}
+BENCHMARK_CAPTURE(solve_laplacian, by_factors, ~std::size_t{0})->Apply(laplacian_sizes);
+BENCHMARK_CAPTURE(solve_laplacian, by_multigrid, std::size_t{0})->Apply(laplacian_sizes);
 
 }  // namespace
 }  // namespace applique

@@ -10,8 +10,10 @@
 namespace applique {
 
 struct LaplacianSolverOptions {
-  std::size_t most_factored = 50000;  ///< Unknowns up to which the matrix is factored.
-  double tolerance = 1e-10;           ///< Of the iteration: the error's share of the solution, by energy.
+  /// Unknowns up to which the matrix is factored. Measured (benchmarks, solve_laplacian; matrix and one
+  /// solution): 32k unknowns 52 ms by factors, 48 by multigrid; 59k 131, 162; 115k 640, 270.
+  std::size_t most_factored = 50000;
+  double tolerance = 1e-10;  ///< Of the iteration: the error's share of the solution, by energy.
   int max_iterations = 150;
 };
 
