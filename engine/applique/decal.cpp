@@ -81,12 +81,10 @@ Result<Similarity> lone_alignment(const SurfaceMesh& surface, const DecalInput& 
 std::vector<Vec2> warp_all(const Warp& warp, const std::vector<Vec2>& places,
                            const std::vector<double>& influence) {
   if (warp.steps == 0) return places;
-  constexpr std::size_t batch = 256;
   const std::size_t groups = warp.groups;
   std::vector<Vec2> warped(places.size());
-  parallel_for(static_cast<int>((places.size() + batch - 1) / batch), [&](int i) {
-    const std::size_t first = batch * static_cast<std::size_t>(i);
-    for (std::size_t k = first; k < std::min(first + batch, places.size()); ++k)
+  parallel_ranges(places.size(), 256, [&](std::size_t first, std::size_t last) {
+    for (std::size_t k = first; k < last; ++k)
       warped[k] =
           groups == 1 ? warp(places[k]) : warp(places[k], std::span(influence).subspan(k * groups, groups));
   });
@@ -326,11 +324,13 @@ class Solver {
       if (map_.solves >= options_.max_solves || runs_over_itself(disc)) break;
       auto inside = growth.inside(points_);
       const std::size_t peeled = energy == Energy::conformal && !padded ? growth.peel(points_, inside) : 0;
-      const std::size_t added =
-          growth.grow(points_, inside, scale_, {}) + growth.fill_pockets(points_, inside, scale_);
-      // What is still to come of a patch that hardly changes, the margin brings as well; but where the patch
-      // lies over itself, or may come to, each face counts.
+      // Where the patch lies over itself, or may come to, each face counts. Else it grows by a share of its
+      // own size, so that the number of embeddings does not follow the resolution; and what is still to come
+      // of a patch that hardly changes, the margin brings as well.
       const bool exactly = padded || groups_.count > 1 || options_.overlap == Overlap::allow;
+      const Growth::Limits limits{.share = exactly ? 0.0 : 1.0};
+      const std::size_t added =
+          growth.grow(points_, inside, scale_, limits) + growth.fill_pockets(points_, inside, scale_);
       const double settled = exactly ? 0 : few_changes * static_cast<double>(disc.faces().size());
       if (static_cast<double>(added + peeled) <= settled) {
         // Thin patches mislead: what they say of the features' order counts once the patch is grown.

@@ -86,6 +86,14 @@ Soup bump(int cells, double height, double width) {
   });
 }
 
+Vec3 hills_at(double x, double y) {
+  return {x, y, 0.12 * std::sin(4 * x + 1) * std::cos(5 * y) + 0.03 * std::sin(13 * x - 7 * y)};
+}
+
+Soup hills(int cells) {
+  return grid(cells, cells, [](double s, double t) { return hills_at(2 * s - 1, 2 * t - 1); });
+}
+
 SurfacePoint nearest(const SurfaceMesh& mesh, const Vec3& position) {
   SurfacePoint best;
   double best_distance = std::numeric_limits<double>::infinity();

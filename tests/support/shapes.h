@@ -35,6 +35,10 @@ Soup torus(int around, int across, double major, double minor);
 /// The plane [-1,1]^2 with a bump of the given height and width in the middle.
 Soup bump(int cells, double height, double width);
 
+/// Gentle hills over [-1,1]^2 and a place of them: nowhere developable, and flattened without a fold.
+Soup hills(int cells);
+Vec3 hills_at(double x, double y);
+
 /// The surface point nearest to `position`, by trying all faces.
 SurfacePoint nearest(const SurfaceMesh& mesh, const Vec3& position);
 

@@ -19,4 +19,12 @@ void parallel_for(int count, const std::function<void(int)>& work) {
   for (std::thread& thread : pool) thread.join();
 }
 
+void parallel_ranges(std::size_t count, std::size_t longest,
+                     const std::function<void(std::size_t, std::size_t)>& work) {
+  parallel_for(static_cast<int>((count + longest - 1) / longest), [&](int i) {
+    const std::size_t first = longest * static_cast<std::size_t>(i);
+    work(first, std::min(first + longest, count));
+  });
+}
+
 }  // namespace applique

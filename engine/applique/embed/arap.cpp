@@ -3,17 +3,17 @@
 #include <algorithm>
 #include <cmath>
 
-#include <Eigen/SparseCholesky>
+#include "applique/base/laplacian_solver.h"
 
 namespace applique {
 namespace {
 
 using Matrix = Eigen::SparseMatrix<double>;
 
-/// The cotangent Laplacian with vertex 0 held (its row and column dropped).
+/// The cotangent Laplacian with vertex 0 held (its row and column dropped); the lower triangle.
 Matrix held_laplacian(const DiscGeometry& disc) {
   std::vector<Eigen::Triplet<double>> entries;
-  entries.reserve(12 * disc.faces.size());
+  entries.reserve(9 * disc.faces.size());
   for (std::size_t t = 0; t < disc.faces.size(); ++t)
     for (int k = 0; k < 3; ++k) {
       const double w = disc.cotangents[t][k];
@@ -21,8 +21,7 @@ Matrix held_laplacian(const DiscGeometry& disc) {
       if (a >= 0) entries.emplace_back(a, a, w);
       if (b >= 0) entries.emplace_back(b, b, w);
       if (a < 0 || b < 0) continue;
-      entries.emplace_back(a, b, -w);
-      entries.emplace_back(b, a, -w);
+      entries.emplace_back(std::max(a, b), std::min(a, b), -w);
     }
   const auto n = static_cast<Eigen::Index>(disc.vertices - 1);
   Matrix laplacian(n, n);
@@ -34,8 +33,8 @@ Matrix held_laplacian(const DiscGeometry& disc) {
 
 std::vector<Vec2> relax_arap(const DiscGeometry& disc, std::vector<Vec2> plane, const ArapOptions& options) {
   if (disc.faces.size() < 2) return plane;
-  Eigen::SimplicialLDLT<Matrix> solver(held_laplacian(disc));
-  if (solver.info() != Eigen::Success) return plane;
+  LaplacianSolver solver;
+  if (!solver.compute(held_laplacian(disc))) return plane;
 
   std::vector<std::array<Vec2, 3>> edges(
       disc.faces.size());  // of the flat triangles, edge k opposite corner k
@@ -50,7 +49,7 @@ std::vector<Vec2> relax_arap(const DiscGeometry& disc, std::vector<Vec2> plane, 
   mean_edge /= static_cast<double>(3 * disc.faces.size());
 
   const Vec2 held = plane[0];
-  Eigen::MatrixX2d right(static_cast<Eigen::Index>(disc.vertices), 2);
+  Eigen::VectorXcd right(static_cast<Eigen::Index>(disc.vertices));
   for (int iteration = 0; iteration < options.max_iterations; ++iteration) {
     right.setZero();
     for (std::size_t t = 0; t < disc.faces.size(); ++t) {
@@ -64,15 +63,14 @@ std::vector<Vec2> relax_arap(const DiscGeometry& disc, std::vector<Vec2> plane, 
       const Vec2 rotation = size > 0 ? fit / size : Vec2(1);
       for (int k = 0; k < 3; ++k) {
         const Vec2 pull = disc.cotangents[t][k] * rotation * edges[t][k];
-        right.row(f[(k + 2) % 3]) += Eigen::RowVector2d(pull.real(), pull.imag());
-        right.row(f[(k + 1) % 3]) -= Eigen::RowVector2d(pull.real(), pull.imag());
+        right[f[(k + 2) % 3]] += pull;
+        right[f[(k + 1) % 3]] -= pull;
       }
     }
-    const Eigen::MatrixX2d solved = solver.solve(Eigen::MatrixX2d(right.bottomRows(right.rows() - 1)));
+    const Eigen::VectorXcd solved = solver.solve(Eigen::VectorXcd(right.tail(right.size() - 1)));
     double moved = 0;
     for (std::size_t v = 1; v < disc.vertices; ++v) {
-      const auto row = static_cast<Eigen::Index>(v - 1);
-      const Vec2 next = held + Vec2(solved(row, 0), solved(row, 1));
+      const Vec2 next = held + solved[static_cast<Eigen::Index>(v - 1)];
       moved = std::max(moved, std::abs(next - plane[v]));
       plane[v] = next;
     }

@@ -4,15 +4,16 @@
 #include <limits>
 #include <numbers>
 
-#include <Eigen/SparseCholesky>
+#include "applique/base/laplacian_solver.h"
 
 namespace applique {
 namespace {
 
 using Matrix = Eigen::SparseMatrix<double>;
+using Eigen::VectorXcd;
 using Eigen::VectorXd;
 
-/// The cotangent Laplacian's blocks: interior-interior and interior-boundary.
+/// The cotangent Laplacian's blocks: interior-interior, its lower triangle, and interior-boundary.
 struct LaplacianBlocks {
   Matrix interior;
   Matrix coupling;
@@ -35,7 +36,7 @@ Numbering number_vertices(const DiscGeometry& disc) {
 
 LaplacianBlocks assemble(const DiscGeometry& disc, const Numbering& n) {
   std::vector<Eigen::Triplet<double>> interior, coupling;
-  interior.reserve(12 * disc.faces.size());
+  interior.reserve(9 * disc.faces.size());
   for (std::size_t t = 0; t < disc.faces.size(); ++t) {
     for (int k = 0; k < 3; ++k) {
       const double w = 0.5 * disc.cotangents[t][k];
@@ -43,10 +44,10 @@ LaplacianBlocks assemble(const DiscGeometry& disc, const Numbering& n) {
       for (const auto& [i, j] : {std::pair(a, b), std::pair(b, a)}) {
         if (n.interior[i] < 0) continue;
         interior.emplace_back(n.interior[i], n.interior[i], w);
-        if (n.interior[j] >= 0)
-          interior.emplace_back(n.interior[i], n.interior[j], -w);
-        else
+        if (n.interior[j] < 0)
           coupling.emplace_back(n.interior[i], n.boundary[j], -w);
+        else if (n.interior[j] < n.interior[i])
+          interior.emplace_back(n.interior[i], n.interior[j], -w);
       }
     }
   }
@@ -85,16 +86,13 @@ std::vector<Vec2> lay_out_boundary(const VectorXd& turning, const VectorXd& leng
 
 }  // namespace
 
-std::vector<Vec2> flatten_boundary_first(const DiscGeometry& disc) {
+std::vector<Vec2> flatten_boundary_first(const DiscGeometry& disc, const LaplacianSolverOptions& solving) {
   const Numbering n = number_vertices(disc);
   const auto boundary_count = static_cast<Eigen::Index>(disc.boundary.size());
   const LaplacianBlocks laplacian = assemble(disc, n);
-  Eigen::SimplicialLDLT<Matrix> solver;
-  if (n.interior_count > 0) {
-    solver.compute(laplacian.interior);
-    if (solver.info() != Eigen::Success)
-      return std::vector<Vec2>(disc.vertices, std::numeric_limits<double>::quiet_NaN());
-  }
+  LaplacianSolver solver(solving);
+  if (n.interior_count > 0 && !solver.compute(laplacian.interior))
+    return std::vector<Vec2>(disc.vertices, std::numeric_limits<double>::quiet_NaN());
 
   // Angle defects inside, turning angles on the boundary.
   VectorXd defect = VectorXd::Constant(n.interior_count, 2 * std::numbers::pi);
@@ -107,7 +105,7 @@ std::vector<Vec2> flatten_boundary_first(const DiscGeometry& disc) {
   if (n.interior_count > 0) {
     // The scale factors that flatten the inside with u = 0 on the boundary, and what turning they leave
     // (Cherrier).
-    const VectorXd scale = solver.solve(-defect);
+    const VectorXd scale = solver.solve(VectorXd(-defect));
     turning += laplacian.coupling.transpose() * scale;
   }
   turning.array() += (2 * std::numbers::pi - turning.sum()) / static_cast<double>(boundary_count);
@@ -123,11 +121,10 @@ std::vector<Vec2> flatten_boundary_first(const DiscGeometry& disc) {
   std::vector<Vec2> plane(disc.vertices);
   for (Eigen::Index i = 0; i < boundary_count; ++i) plane[disc.boundary[i]] = polygon[i];
   if (n.interior_count > 0) {
-    Eigen::MatrixX2d rim(boundary_count, 2);
-    for (Eigen::Index i = 0; i < boundary_count; ++i) rim.row(i) << polygon[i].real(), polygon[i].imag();
-    const Eigen::MatrixX2d inside = solver.solve(Eigen::MatrixX2d(-(laplacian.coupling * rim)));
+    const auto rim = Eigen::Map<const VectorXcd>(polygon.data(), boundary_count);
+    const VectorXcd inside = solver.solve(VectorXcd(-(laplacian.coupling * rim)));
     for (std::size_t v = 0; v < disc.vertices; ++v)
-      if (n.interior[v] >= 0) plane[v] = Vec2(inside(n.interior[v], 0), inside(n.interior[v], 1));
+      if (n.interior[v] >= 0) plane[v] = inside[n.interior[v]];
   }
   return plane;
 }

@@ -13,7 +13,7 @@ constexpr double far_share = 0.1;  // of the region's diameter: as in growth
 struct RimEdge {
   Vec2 from, to;
   Vec2 image;  ///< Its middle.
-  double left, right;
+  double left, right, bottom, top;
 };
 
 /// The edges between faces that lie in the region and what does not.
@@ -32,14 +32,16 @@ std::vector<RimEdge> find_rim(const ImmersedDisc& disc, const PatchPoints& point
     for (int k = 0; k < 3; ++k) {
       if (face.neighbours[k].valid() && covered(face.neighbours[k])) continue;
       const PatchPoint &a = points[face.vertices[(k + 1) % 3]], &b = points[face.vertices[(k + 2) % 3]];
-      const auto [left, right] = std::minmax(a.plane.real(), b.plane.real());
-      rim.push_back({a.plane, b.plane, 0.5 * (a.image + b.image), left, right});
+      const auto [left, right] = std::minmax({a.plane.real(), b.plane.real()});
+      const auto [bottom, top] = std::minmax({a.plane.imag(), b.plane.imag()});
+      rim.push_back({a.plane, b.plane, 0.5 * (a.image + b.image), left, right, bottom, top});
     }
   }
   return rim;
 }
 
 bool cross_properly(const RimEdge& e, const RimEdge& f) {
+  if (e.top < f.bottom || f.top < e.bottom) return false;
   return orientation(e.from, e.to, f.from) * orientation(e.from, e.to, f.to) < 0 &&
          orientation(f.from, f.to, e.from) * orientation(f.from, f.to, e.to) < 0;
 }
@@ -55,7 +57,7 @@ bool overlaps_in_plane(const ImmersedDisc& disc, const PatchPoints& points, cons
   for (const RimEdge& edge : rim) {
     std::erase_if(open, [&](const RimEdge* other) { return other->right < edge.left; });
     for (const RimEdge* other : open)
-      if (std::abs(other->image - edge.image) > far && cross_properly(edge, *other)) return true;
+      if (cross_properly(edge, *other) && std::abs(other->image - edge.image) > far) return true;
     open.push_back(&edge);
   }
   return false;

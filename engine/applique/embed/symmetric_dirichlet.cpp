@@ -4,8 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include <Eigen/SparseCholesky>
-
+#include "applique/base/laplacian_solver.h"
 #include "applique/embed/collapse.h"
 #include "applique/embed/lbfgs.h"
 #include "applique/embed/triangle_energy.h"
@@ -61,7 +60,7 @@ class WeightedLaplacian {
       const int* last = matrix_.innerIndexPtr() + matrix_.outerIndexPtr()[column + 1];
       slots_[t][entry] = static_cast<int>(std::lower_bound(first, last, row) - matrix_.innerIndexPtr());
     });
-    solver_.analyzePattern(matrix_);
+    solver_.analyse(matrix_);
   }
 
   /// Weighs the triangles by how `plane` stretches them; false when the matrix cannot be factored.
@@ -72,17 +71,10 @@ class WeightedLaplacian {
     // The energy does not see motions of the plane: a trace of the diagonal holds them.
     const double hold = 1e-8 * matrix_.diagonal().mean();
     for (Eigen::Index i = 0; i < matrix_.rows(); ++i) matrix_.coeffRef(i, i) += hold;
-    solver_.factorize(matrix_);
-    return solver_.info() == Eigen::Success;
+    return solver_.renew(matrix_);
   }
 
-  [[nodiscard]] PlanePoints solve(const PlanePoints& right) const {
-    using Rows = Eigen::Matrix<double, Eigen::Dynamic, 2, Eigen::RowMajor>;
-    PlanePoints solved(right.size());
-    Eigen::Map<Rows>(reinterpret_cast<double*>(solved.data()), right.size(), 2) =
-        solver_.solve(Eigen::Map<const Rows>(reinterpret_cast<const double*>(right.data()), right.size(), 2));
-    return solved;
-  }
+  [[nodiscard]] PlanePoints solve(const PlanePoints& right) { return solver_.solve(right); }
 
  private:
   /// Calls visit(face, entry, row, column) for the lower triangle of each face's 3 x 3 block.
@@ -118,7 +110,9 @@ class WeightedLaplacian {
   double isometry_;
   SparseMatrix matrix_;  // lower triangle
   std::vector<std::array<int, 6>> slots_;
-  Eigen::SimplicialLDLT<SparseMatrix> solver_;
+  // L-BFGS corrects the rest. With one V-cycle in place of a solution it takes twice the steps and stops
+  // short.
+  LaplacianSolver solver_{{.tolerance = 1e-2}};
 };
 
 }  // namespace

@@ -68,11 +68,9 @@ std::vector<Vec2> warp_forward(const ForwardWarp& warp, std::span<const Vec2> po
   std::vector<StepTable> tables;
   for (int step = 0; step < steps; ++step) tables.push_back(tabulate(warp, double(step) / steps));
   std::vector<Vec2> warped(points.begin(), points.end());
-  constexpr std::size_t batch = 256;
-  parallel_for(static_cast<int>((points.size() + batch - 1) / batch), [&](int b) {
-    const std::size_t first = batch * static_cast<std::size_t>(b);
+  parallel_ranges(points.size(), 256, [&](std::size_t first, std::size_t last) {
     std::vector<double> squared(warp.from.size());
-    for (std::size_t v = first; v < std::min(first + batch, warped.size()); ++v) {
+    for (std::size_t v = first; v < last; ++v) {
       const std::vector<double> alpha = pair_influence(
           warp, warp.groups == 1 ? influence : influence.subspan(v * warp.groups, warp.groups));
       for (const StepTable& table : tables)

@@ -5,8 +5,8 @@
 #include <optional>
 
 #include <Eigen/Geometry>
-#include <Eigen/SparseCholesky>
 
+#include "applique/base/laplacian_solver.h"
 #include "applique/base/types.h"
 
 namespace applique {
@@ -26,15 +26,18 @@ std::optional<double> passage(Vec2 a, Vec2 b, const std::array<Vec2, 3>& triangl
   return from <= to ? std::optional(0.5 * (from + to)) : std::nullopt;
 }
 
-/// What is fixed: per face the values of depth and order, or none.
-using Fixed = IdVector<PatchFaceId, std::optional<Eigen::RowVector2d>>;
+/// Depth and order, which spread alike, as one complex number.
+using Value = std::complex<double>;
+
+/// What is fixed: per face its value, or none.
+using Fixed = IdVector<PatchFaceId, std::optional<Value>>;
 
 Fixed fix_faces(const Patch& patch, const IdVector<PatchVertexId, Vec2>& image,
                 std::span<const DepthFeature> features, std::span<const FeaturePair> tree) {
-  const auto value = [&](std::uint32_t k) { return Eigen::RowVector2d(features[k].depth, k); };
-  IdVector<PatchFaceId, Eigen::RowVector2d> sum(patch.faces.size(), Eigen::RowVector2d::Zero());
+  const auto value = [&](std::uint32_t k) { return Value(features[k].depth, k); };
+  IdVector<PatchFaceId, Value> sum(patch.faces.size(), 0);
   IdVector<PatchFaceId, int> count(patch.faces.size(), 0);
-  const auto add = [&](PatchFaceId q, const Eigen::RowVector2d& fixed) {
+  const auto add = [&](PatchFaceId q, Value fixed) {
     sum[q] += fixed;
     ++count[q];
   };
@@ -48,12 +51,12 @@ Fixed fix_faces(const Patch& patch, const IdVector<PatchVertexId, Vec2>& image,
   }
   for (const DepthFeature& feature : features) count[feature.face] = 0;
   for (std::uint32_t k = 0; k < features.size(); ++k) {
-    if (count[features[k].face] == 0) sum[features[k].face].setZero();
+    if (count[features[k].face] == 0) sum[features[k].face] = 0;
     add(features[k].face, value(k));
   }
   Fixed fixed(patch.faces.size());
   for (PatchFaceId q : ids<PatchFaceId>(patch.faces.size()))
-    if (count[q] > 0) fixed[q] = sum[q] / count[q];
+    if (count[q] > 0) fixed[q] = sum[q] / static_cast<double>(count[q]);
   return fixed;
 }
 
@@ -68,23 +71,26 @@ FaceDepths spread_depths(const Patch& patch, const IdVector<PatchVertexId, Vec2>
     if (!fixed[q]) row[q] = rows++;
 
   std::vector<Eigen::Triplet<double>> entries;
-  Eigen::MatrixX2d right = Eigen::MatrixX2d::Zero(rows, 2);
+  Eigen::VectorXcd right = Eigen::VectorXcd::Zero(rows);
   for (PatchFaceId q : ids<PatchFaceId>(patch.faces.size())) {
     if (row[q] < 0) continue;
     for (const PatchFaceId across : patch.faces[q].neighbours) {
       if (!across.valid()) continue;
       entries.emplace_back(row[q], row[q], 1);
-      if (row[across] >= 0)
+      if (row[across] < 0)
+        right[row[q]] += *fixed[across];
+      else if (row[across] < row[q])
         entries.emplace_back(row[q], row[across], -1);
-      else
-        right.row(row[q]) += *fixed[across];
     }
   }
-  Eigen::MatrixX2d solved(rows, 2);
+  Eigen::VectorXcd solved;
   if (rows > 0) {
     Eigen::SparseMatrix<double> laplacian(rows, rows);
     laplacian.setFromTriplets(entries.begin(), entries.end());
-    solved = Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>>(laplacian).solve(right);
+    LaplacianSolver solver;
+    const bool regular = solver.compute(laplacian);
+    APPLIQUE_ASSERT(regular);  // a patch hangs together, and something in it is fixed
+    solved = solver.solve(right);
   }
   // A lone feature leaves all open: the place along the image's longer side orders its ends, one of which
   // then lies over the other as a whole.
@@ -101,9 +107,9 @@ FaceDepths spread_depths(const Patch& patch, const IdVector<PatchVertexId, Vec2>
                                  [&](const DepthFeature& f) { return f.depth == features[0].depth; });
   FaceDepths depths;
   for (PatchFaceId q : ids<PatchFaceId>(patch.faces.size())) {
-    const Eigen::RowVector2d value = fixed[q] ? *fixed[q] : Eigen::RowVector2d(solved.row(row[q]));
-    depths.depth.push_back(level ? features[0].depth : value[0]);
-    depths.order.push_back(features.size() > 1 ? value[1] : order_of_one(q));
+    const Value value = fixed[q] ? *fixed[q] : solved[row[q]];
+    depths.depth.push_back(level ? features[0].depth : value.real());
+    depths.order.push_back(features.size() > 1 ? value.imag() : order_of_one(q));
   }
   return depths;
 }

@@ -1,6 +1,7 @@
 #include "applique/patch/growth.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace applique {
 namespace {
@@ -28,20 +29,24 @@ Growth::Growth(ImmersedDisc& disc, std::vector<PatchFaceId> feature_faces, const
     : disc_(disc), feature_faces_(std::move(feature_faces)), region_(region), cover_limit_(cover_limit) {}
 
 IdVector<PatchVertexId, char> Growth::inside(const PatchPoints& points) const {
+  // A flood of the faces with a vertex inside. The fan of a vertex hangs together by edges at that vertex, so
+  // that it is enough to cross the edges that have such an end.
   IdVector<PatchVertexId, char> inside(disc_.vertex_count(), false);
-  std::vector<PatchVertexId> stack;
-  const auto visit = [&](PatchVertexId v) {
-    if (inside[v] || !region_.contains(points[v].image)) return;
-    inside[v] = true;
-    stack.push_back(v);
+  IdVector<PatchFaceId, char> seen(disc_.faces().size(), false);
+  std::vector<PatchFaceId> stack;
+  const auto visit = [&](PatchFaceId q) {
+    if (!q.valid() || seen[q]) return;
+    seen[q] = true;
+    stack.push_back(q);
   };
-  for (PatchFaceId q : feature_faces_)
-    for (PatchVertexId v : disc_.faces()[q].vertices) visit(v);
+  for (PatchFaceId q : feature_faces_) visit(q);
   while (!stack.empty()) {
-    const PatchVertexId v = stack.back();
+    const PatchFace& face = disc_.faces()[stack.back()];
     stack.pop_back();
-    for (PatchFaceId q : disc_.fan(v))
-      for (PatchVertexId w : disc_.faces()[q].vertices) visit(w);
+    const auto& v = face.vertices;
+    for (PatchVertexId w : v) inside[w] = inside[w] || region_.contains(points[w].image);
+    for (int k = 0; k < 3; ++k)
+      if (inside[v[(k + 1) % 3]] || inside[v[(k + 2) % 3]]) visit(face.neighbours[k]);
   }
   return inside;
 }
@@ -213,13 +218,15 @@ ImmersedDisc::Glue Growth::glue(PatchFaceId q, int k, PatchPoints& points,
 
 std::size_t Growth::grow(PatchPoints& points, IdVector<PatchVertexId, char>& inside, double scale,
                          const Limits& limits) {
-  const std::size_t most = static_cast<std::size_t>(limits.growth * static_cast<double>(disc_.live_faces()));
+  const auto faces = static_cast<double>(disc_.live_faces());
+  const auto most = static_cast<std::size_t>(limits.growth * faces);
+  const int rings = std::max(limits.rings, static_cast<int>(limits.share * std::sqrt(faces)));
   note_cover();
   std::vector<PatchFaceId> candidates;
   candidates.reserve(disc_.faces().size());
   for (PatchFaceId q : ids<PatchFaceId>(disc_.faces().size())) candidates.push_back(q);
   std::size_t added = 0;
-  for (int ring = 0; ring < limits.rings && disc_.live_faces() < most && !candidates.empty(); ++ring) {
+  for (int ring = 0; ring < rings && disc_.live_faces() < most && !candidates.empty(); ++ring) {
     std::vector<PatchFaceId> fresh;
     for (const Side& side : front(points, inside, candidates)) {
       if (disc_.faces()[side.face].neighbours[side.edge].valid()) continue;  // zipped meanwhile

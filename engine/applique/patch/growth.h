@@ -50,6 +50,7 @@ class Growth {
 
   struct Limits {
     int rings = 32;
+    double share = 0;  ///< Or as many rings as this share of the root of the patch's faces, if they are more.
     double growth = 8;  ///< No further ring once the patch is this many times its size.
   };
   /// Glues rings of faces at the boundary where it lies in the region; where new vertices lie is
