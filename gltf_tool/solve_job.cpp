@@ -89,9 +89,10 @@ Result<std::vector<Pixel>> find_contour(const RegionChoice& choice, const Image&
   return rectangle_outline(image);
 }
 
-Result<Region> find_region(const RegionChoice& choice, const Image& image) {
-  APPLIQUE_TRY(const auto contour, find_contour(choice, image));
-  return Region::from_contour(contour, {static_cast<double>(image.width), static_cast<double>(image.height)});
+Result<Region> find_region(const DecalJob& decal, const Image& image) {
+  APPLIQUE_TRY(const auto contour, find_contour(decal.region, image));
+  const auto width = static_cast<double>(image.width), height = static_cast<double>(image.height);
+  return Region::from_contour(contour, {width, height, decal.mirrored});
 }
 
 Result<std::optional<LoneFrame>> find_lone_frame(const DecalJob& decal, std::vector<Warning>& warnings) {
@@ -118,7 +119,7 @@ Result<std::optional<LoneFrame>> find_lone_frame(const DecalJob& decal, std::vec
 Result<void> solve_geometry(const Model& model, SurfaceCache& surfaces, SolvedDecal& decal, bool traced) {
   const std::string& name = decal.job.name;
   Stopwatch watch;
-  APPLIQUE_TRY(decal.region, of_decal(decal.job, find_region(decal.job.region, decal.image)));
+  APPLIQUE_TRY(decal.region, of_decal(decal.job, find_region(decal.job, decal.image)));
   decal.times.add("region", watch.lap());
 
   APPLIQUE_TRY(const SurfaceCache::Entry* entry, surfaces.find(decal.job));

@@ -247,10 +247,6 @@ class Solver {
                                       groups_.of);
   }
 
-  [[nodiscard]] std::string feature_range() const {
-    return fmt::format("0 to {}", input_.features.size() - 1);
-  }
-
   static Vec2 interpolate(const ImmersedDisc& disc, PatchFaceId q, const SurfacePoint& point,
                           const std::vector<Vec2>& plane) {
     Vec2 z = 0;
@@ -299,14 +295,7 @@ class Solver {
       const double settled = exactly ? 0 : few_changes * static_cast<double>(disc.faces().size());
       if (static_cast<double>(added + peeled) <= settled) {
         // Thin patches mislead: what they say of the features' order counts once the patch is grown.
-        if (mirrored_)
-          return fail(
-              ErrorCode::features_mirrored,
-              fmt::format(
-                  "decal '{}': the features {} run one way round in the image and the other way round on "
-                  "the surface, so that the image would have to be mirrored; swap the places of left and "
-                  "right, or mirror the image",
-                  input_.name, feature_range()));
+        if (mirrored_) return fail_mirrored(input_);
         if (energy != options_.energy) {
           energy = options_.energy;
         } else if (padded) {

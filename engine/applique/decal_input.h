@@ -16,6 +16,10 @@ bool checks_patch(const SolveOptions& options);
 /// The features' image points in the plane.
 std::vector<Vec2> targets_of(const DecalInput& input);
 
+/// The features_mirrored of a decal whose features run one way round in the image and the other way round on
+/// the surface.
+tl::unexpected<Error> fail_mirrored(const DecalInput& input);
+
 /// What every method asks of its input. `targets`: the features' image points in the plane. Features may
 /// share a spot of the surface, not of the image, where the decal may lie over itself. Errors, each naming
 /// the decal and the features: feature_place_invalid, feature_outside_region, features_coincide,

@@ -154,6 +154,30 @@ TEST_F(BakeTest, PutsTheImageThereAndNowhereElse) {
 }
 
 /// Two nodes, meshes and materials that meet at x = 0: one surface to a decal, which lies half on each.
+/// A mirrored decal of the mirrored image is the image.
+TEST_F(BakeTest, MirroredTwiceIsPlain) {
+  Image turned = make_quarters();
+  for (int y = 0; y < image_size; ++y)
+    for (int x = 0; x < image_size; ++x) {
+      const auto colour = colour_at(make_quarters(), image_size - 1 - x, y);
+      std::copy(colour.begin(), colour.end(), turned.pixel(x, y));
+    }
+  write_png(folder_ / "turned.png", turned);
+  json job = job_at(-2, 0);
+  job["decals"][0]["image"] = "turned.png";
+  job["decals"][0]["mirrored"] = true;
+  for (json& feature : job["decals"][0]["features"])
+    feature["image"][0] = image_size - feature["image"][0].get<int>();
+  const CommandResult result = bake(job);
+  ASSERT_EQ(result.status, 0) << result.err;
+  const auto model = load_model(folder_ / "out.glb");
+  ASSERT_TRUE(model) << model.error().message;
+  const auto texture =
+      load_model_image(*model, *model->materials[*part_named(*model, "Left").material].image);
+  ASSERT_TRUE(texture);
+  expect_quarters(*texture, &texture_);
+}
+
 TEST_F(BakeTest, CrossesFromOneMaterialToAnother) {
   write_small_model(folder_ / "model.glb",
                     {make_plane("Left", 8, -1),
