@@ -366,6 +366,40 @@ TEST_F(BakeTest, CheckReportsTheSameGeometryAndDumpsTheRegion) {
   EXPECT_NEAR(valid_report()["decals"][0]["area"].get<double>(), 56.0 * 56 / 64 / 64, 1e-9);
 }
 
+/// The suggested feature, pasted into the job, does what the report says; so does leaving one out.
+TEST_F(BakeTest, SuggestionsHoldWhatTheyPromise) {
+  const auto l2_of = [&](const json& job, const std::string& arguments) {
+    folder_.write("job.json", job);
+    const CommandResult result = folder_.run("check job.json --report report.json " + arguments);
+    EXPECT_EQ(result.status, 0) << result.err;
+    return valid_report()["decals"][0]["stretch"]["l2"].get<double>();
+  };
+  json job = job_at(-2, 0);
+  json& features = job["decals"][0]["features"];
+  for (const auto& [x, y] : {std::pair{16, 10}, {48, 10}, {16, 54}, {48, 54}})
+    features.push_back({{"image", {x, y}}, {"position", {-2 + (x - 32) / 64.0, (32 - y) / 64.0, 0}}});
+  features[0]["position"][0] = -2.17;
+  const double before = l2_of(job, "");
+  EXPECT_TRUE(valid_report()["decals"][0]["suggestions"].is_null());
+  l2_of(job, "--suggest");
+  const json suggestions = valid_report()["decals"][0]["suggestions"];
+  EXPECT_NEAR(suggestions["l2"].get<double>(), before, 1e-12);
+  ASSERT_TRUE(suggestions["add"].is_object());
+  ASSERT_TRUE(suggestions["leave_out"].is_object());
+  EXPECT_EQ(suggestions["leave_out"]["feature"], 0);
+
+  json with = job;
+  json further = suggestions["add"];
+  further.erase("l2");
+  with["decals"][0]["features"].push_back(further);
+  const double after = l2_of(with, "");
+  EXPECT_LT(after, 0.999 * before);
+  EXPECT_NEAR(after, suggestions["add"]["l2"].get<double>(), 1e-6);
+  json without = job;
+  without["decals"][0]["features"].erase(0);
+  EXPECT_NEAR(l2_of(without, ""), suggestions["leave_out"]["l2"].get<double>(), 1e-6);
+}
+
 TEST_F(BakeTest, InspectTellsWhatIsInTheModel) {
   const CommandResult text = folder_.run("inspect model.glb");
   EXPECT_EQ(text.status, 0) << text.err;
