@@ -374,11 +374,14 @@ TEST_F(BakeTest, SuggestionsHoldWhatTheyPromise) {
     EXPECT_EQ(result.status, 0) << result.err;
     return valid_report()["decals"][0]["stretch"]["l2"].get<double>();
   };
-  json job = job_at(-2, 0);
+  write_small_model(folder_ / "fine.glb", {make_plane("Fine", 40)}, {{"plain", std::nullopt, {1, 1, 1, 1}}});
+  json job = job_at(0, 0);
+  job["model"] = "fine.glb";
   json& features = job["decals"][0]["features"];
-  for (const auto& [x, y] : {std::pair{16, 10}, {48, 10}, {16, 54}, {48, 54}})
-    features.push_back({{"image", {x, y}}, {"position", {-2 + (x - 32) / 64.0, (32 - y) / 64.0, 0}}});
-  features[0]["position"][0] = -2.17;
+  features.clear();
+  for (const auto& [x, y] : {std::pair{32, 32}, {16, 16}, {48, 16}, {48, 48}, {16, 48}})
+    features.push_back({{"image", {x, y}}, {"position", {(x - 32) / 64.0, (32 - y) / 64.0, 0}}});
+  features[0]["position"][0] = 0.075;
   const double before = l2_of(job, "");
   EXPECT_TRUE(valid_report()["decals"][0]["suggestions"].is_null());
   l2_of(job, "--suggest");
