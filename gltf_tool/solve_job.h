@@ -50,8 +50,8 @@ using StageCallback = std::function<void(const std::string& stage, double done)>
 /// have (names the near ones); size_missing.
 Result<SolvedJob> solve_job(const Job& job, const StageCallback& on_stage = {}, bool traced = false);
 
-/// Looks for what would lower each decal's stretch: takes as long as to solve it once for each of its features
-/// and some times more.
+/// Looks for what would lower each decal's stretch: takes as long as to solve it once for each of its
+/// features and some times more.
 void suggest_features(SolvedJob& solved, const StageCallback& on_stage = {});
 
 /// The indices of the elements of `array` ("nodes", "materials") that the references name; a name may stand
