@@ -91,6 +91,7 @@ DecalJob decal_of(const json& decal, const std::filesystem::path& folder) {
   DecalJob out;
   out.name = decal["name"].get<std::string>();
   out.image = folder / decal["image"].get<std::string>();
+  out.mirrored = decal.value("mirrored", out.mirrored);
   out.region = region_of(decal);
   for (const json& feature : decal["features"])
     out.features.push_back({pixel_of(feature["image"]), place_of(feature), feature.value("depth", 0.0)});

@@ -40,6 +40,7 @@ struct JobFeature {
 struct DecalJob {
   std::string name;             ///< Unique in the job.
   std::filesystem::path image;  ///< Absolute, or relative to the working folder.
+  bool mirrored = false;        ///< Left and right of the image are swapped.
   RegionChoice region;
   std::vector<JobFeature> features;  ///< At least one.
   std::vector<Reference> nodes;      ///< The decal keeps to these; empty: all.

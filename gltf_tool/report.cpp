@@ -1,6 +1,7 @@
 #include "report.h"
 
 #include <cmath>
+#include <numbers>
 
 #include "version.h"
 
@@ -49,13 +50,42 @@ Json warnings_of(const std::vector<Warning>& warnings) {
 Json features_of(const SolvedDecal& decal) {
   Json list = Json::array();
   for (std::size_t i = 0; i < decal.features.size(); ++i) {
-    const Feature& feature = decal.features[i];
-    const Vec3 position = position_of(decal.surface->mesh, feature.surface);
-    list.push_back({{"image", {feature.image.x, feature.image.y}},
-                    {"position", {position.x(), position.y(), position.z()}},
-                    {"residual_px", decal.map.quality.feature_residual.at(i)}});
+    Json feature = feature_json(decal, decal.features[i]);
+    feature["residual_px"] = decal.map.quality.feature_residual.at(i);
+    list.push_back(std::move(feature));
   }
   return list;
+}
+
+double degrees(double radians) {
+  return radians * 180 / std::numbers::pi;
+}
+
+/// Null by methods that have no such warp.
+Json stress_of(const SolvedDecal& decal) {
+  const WarpStress& stress = decal.map.stress;
+  if (stress.features.empty()) return nullptr;
+  Json features = Json::array(), pairs = Json::array();
+  for (const FeatureStress& feature : stress.features)
+    features.push_back({{"shift_px", feature.shift * decal.region.frame().pixels_per_unit()},
+                        {"scale", feature.scale},
+                        {"turn_degrees", degrees(feature.turn)}});
+  for (const auto& [pair, scale, turn] : stress.pairs)
+    pairs.push_back({{"features", pair}, {"scale", scale}, {"turn_degrees", degrees(turn)}});
+  return {{"features", std::move(features)}, {"pairs", std::move(pairs)}};
+}
+
+/// Null where it was not asked for.
+Json suggestions_of(const SolvedDecal& decal) {
+  if (!decal.suggestion) return nullptr;
+  const auto& [stretch, add, leave_out] = *decal.suggestion;
+  Json out = {{"l2", stretch}, {"add", nullptr}, {"leave_out", nullptr}};
+  if (add) {
+    out["add"] = feature_json(decal, add->feature);
+    out["add"]["l2"] = add->l2_stretch;
+  }
+  if (leave_out) out["leave_out"] = {{"feature", leave_out->feature}, {"l2", leave_out->l2_stretch}};
+  return out;
 }
 
 Json decal_seconds(const SolvedDecal& decal) {
@@ -92,10 +122,12 @@ Json decal_of(const SolvedDecal& decal, const std::optional<TexelDensity>& densi
                   {"sheets", map.sheets},
                   {"groups", map.groups}};
   out["features"] = features_of(decal);
+  out["stress"] = stress_of(decal);
   out["flipped"] = {{"embedding", quality.flipped_plane}, {"image", quality.flipped_image}};
   out["stretch"] = {{"l2", finite(quality.l2_stretch)}, {"linf", finite(quality.linf_stretch)}};
   out["distortion"] = {{"angle", finite(quality.angle_distortion)},
                        {"area", finite(quality.area_distortion)}};
+  out["suggestions"] = suggestions_of(decal);
   out["texel_density"] = nullptr;
   if (density)
     out["texel_density"] = {{"texels_per_unit", density->texels_per_unit},
@@ -119,6 +151,14 @@ Json textures_of(const std::vector<TextureReport>& textures) {
 }
 
 }  // namespace
+
+Json feature_json(const SolvedDecal& decal, const Feature& feature) {
+  const Vec3 position = position_of(decal.surface->mesh, feature.surface);
+  Json out = {{"image", {feature.image.x, feature.image.y}},
+              {"position", {position.x(), position.y(), position.z()}}};
+  if (feature.depth != 0) out["depth"] = feature.depth;
+  return out;
+}
 
 Json make_report(const SolvedJob& job, const ReportInput& input) {
   Json report;

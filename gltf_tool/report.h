@@ -42,6 +42,9 @@ struct ReportInput {
   std::vector<Warning> warnings;                       ///< Beyond the model's.
 };
 
+/// A feature as a job file takes it: {"image": [x, y], "position": [x, y, z]}, with "depth" unless it is 0.
+nlohmann::ordered_json feature_json(const SolvedDecal& decal, const Feature& feature);
+
 /// The report of a run, as report.schema.json describes it.
 nlohmann::ordered_json make_report(const SolvedJob& job, const ReportInput& input);
 

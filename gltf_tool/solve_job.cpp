@@ -89,21 +89,23 @@ Result<std::vector<Pixel>> find_contour(const RegionChoice& choice, const Image&
   return rectangle_outline(image);
 }
 
-Result<Region> find_region(const RegionChoice& choice, const Image& image) {
-  APPLIQUE_TRY(const auto contour, find_contour(choice, image));
-  return Region::from_contour(contour, {static_cast<double>(image.width), static_cast<double>(image.height)});
+Result<Region> find_region(const DecalJob& decal, const Image& image) {
+  APPLIQUE_TRY(const auto contour, find_contour(decal.region, image));
+  const auto width = static_cast<double>(image.width), height = static_cast<double>(image.height);
+  return Region::from_contour(contour, {width, height, decal.mirrored});
 }
 
-Result<std::optional<LoneFrame>> find_lone_frame(const DecalJob& decal, std::vector<Warning>& warnings) {
+/// A lone feature needs a size and a direction; several need none.
+Result<void> check_lone_frame(const DecalJob& decal, std::vector<Warning>& warnings) {
   if (decal.features.size() > 1) {
     if (decal.size || decal.up)
       warnings.push_back(
           {"size_ignored", fmt::format("decal '{}': '{}' is not used, because several features fix "
                                        "scale and orientation by themselves",
                                        decal.name, decal.size ? "size" : "up")});
-    return std::nullopt;
+    return {};
   }
-  if (decal.size && decal.up) return LoneFrame{*decal.size, *decal.up};
+  if (decal.size && decal.up) return {};
   return fail(
       ErrorCode::size_missing,
       fmt::format(
@@ -115,25 +117,41 @@ Result<std::optional<LoneFrame>> find_lone_frame(const DecalJob& decal, std::vec
                        "edge)"));
 }
 
+/// The decal as the engine takes it, once its region and its features are known.
+DecalInput input_of(const SolvedDecal& decal) {
+  DecalInput input = {decal.job.name, decal.region, decal.features, std::nullopt};
+  if (decal.job.size && decal.job.up) input.lone = LoneFrame{*decal.job.size, *decal.job.up};
+  return input;
+}
+
+SolveOptions options_of(const DecalJob& decal) {
+  SolveOptions options;
+  options.method = decal.method;
+  options.planar = decal.planar;
+  options.parents = decal.parents;
+  options.energy = decal.energy;
+  options.overlap = decal.overlap;
+  return options;
+}
+
 Result<void> solve_geometry(const Model& model, SurfaceCache& surfaces, SolvedDecal& decal, bool traced) {
   const std::string& name = decal.job.name;
   Stopwatch watch;
-  APPLIQUE_TRY(decal.region, of_decal(decal.job, find_region(decal.job.region, decal.image)));
+  APPLIQUE_TRY(decal.region, of_decal(decal.job, find_region(decal.job, decal.image)));
   decal.times.add("region", watch.lap());
 
   APPLIQUE_TRY(const SurfaceCache::Entry* entry, surfaces.find(decal.job));
   decal.surface = entry->surface;
   decal.times.add("surface", watch.lap());
 
-  DecalInput input = {name, decal.region, {}, std::nullopt};
-  APPLIQUE_TRY(input.lone, find_lone_frame(decal.job, decal.warnings));
+  APPLIQUE_CHECK(check_lone_frame(decal.job, decal.warnings));
   for (std::size_t i = 0; i < decal.job.features.size(); ++i) {
     const JobFeature& feature = decal.job.features[i];
     const std::string label =
         fmt::format("decal '{}', feature {} at ({:.1f}, {:.1f})", name, i, feature.image.x, feature.image.y);
     APPLIQUE_TRY(const SurfacePoint point,
                  resolve_place(feature.place, model, *entry->surface, *entry->query, label));
-    input.features.push_back({feature.image, point, feature.depth});
+    decal.features.push_back({feature.image, point, feature.depth});
   }
   decal.times.add("places", watch.lap());
 
@@ -142,15 +160,9 @@ Result<void> solve_geometry(const Model& model, SurfaceCache& surfaces, SolvedDe
         {"offset_ignored",
          fmt::format("decal '{}': 'offset' is not used, because only an overlay has one", name)});
 
-  SolveOptions options;
-  options.method = decal.job.method;
-  options.planar = decal.job.planar;
-  options.parents = decal.job.parents;
-  options.energy = decal.job.energy;
-  options.overlap = decal.job.overlap;
+  SolveOptions options = options_of(decal.job);
   if (traced) options.trace = &decal.trace;
-  APPLIQUE_TRY(decal.map, of_decal(decal.job, solve_decal(entry->surface->mesh, input, options)));
-  decal.features = std::move(input.features);
+  APPLIQUE_TRY(decal.map, of_decal(decal.job, solve_decal(entry->surface->mesh, input_of(decal), options)));
   decal.times.add("solve", watch.lap());
   return {};
 }
@@ -219,6 +231,20 @@ Result<SolvedJob> solve_job(const Job& job, const StageCallback& on_stage, bool 
     solved.times.add("solve", watch.lap());
   }
   return solved;
+}
+
+void suggest_features(SolvedJob& solved, const StageCallback& on_stage) {
+  const Stopwatch watch;
+  for (std::size_t i = 0; i < solved.decals.size(); ++i) {
+    SolvedDecal& decal = solved.decals[i];
+    if (on_stage)
+      on_stage(fmt::format("looking for better features of '{}'", decal.job.name),
+               static_cast<double>(i) / static_cast<double>(solved.decals.size()));
+    SuggestOptions options;
+    options.solve = options_of(decal.job);
+    decal.suggestion = suggest_feature(decal.surface->mesh, input_of(decal), decal.map, options);
+  }
+  solved.times.add("suggest", watch.seconds());
 }
 
 }  // namespace applique

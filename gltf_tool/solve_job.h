@@ -2,6 +2,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -9,6 +10,7 @@
 #include "applique/decal.h"
 #include "applique/image/image.h"
 #include "applique/region/region.h"
+#include "applique/suggest.h"
 
 #include "job.h"
 #include "model.h"
@@ -25,7 +27,8 @@ struct SolvedDecal {
   Region region;
   std::vector<Feature> features;
   DecalMap map;
-  SolveTrace trace;  ///< Empty unless it was asked for.
+  std::optional<Suggestion> suggestion;  ///< Once asked for.
+  SolveTrace trace;                      ///< Empty unless it was asked for.
   StageTimes times;
   std::vector<Warning> warnings;
 };
@@ -46,6 +49,10 @@ using StageCallback = std::function<void(const std::string& stage, double done)>
 /// solve_decal, each naming the decal; feature_place_invalid for a node or material that the model does not
 /// have (names the near ones); size_missing.
 Result<SolvedJob> solve_job(const Job& job, const StageCallback& on_stage = {}, bool traced = false);
+
+/// Looks for what would lower each decal's stretch: takes as long as to solve it once for each of its
+/// features and some times more.
+void suggest_features(SolvedJob& solved, const StageCallback& on_stage = {});
 
 /// The indices of the elements of `array` ("nodes", "materials") that the references name; a name may stand
 /// for several. `owner` begins the sentence of an error. Errors: feature_place_invalid.

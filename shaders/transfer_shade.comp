@@ -210,7 +210,7 @@ void main() {
       }
       place = in_grid(face.first_point, 1, place);
     }
-    place = constants.half_size + vec2(1.0, -1.0) * constants.pixels_per_unit * warp(place);
+    place = constants.half_size + constants.pixels_per_unit * warp(place);
   }
   if (face.flags >= face_cells) place = in_grid(face.first_point, int(face.flags / face_cells), place);
   int index = work.y * constants.work_size.x + work.x;

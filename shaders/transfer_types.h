@@ -77,7 +77,7 @@ struct TransferConstants {
   uint features;
   uint pairs;
   vec2 half_size;  // Of the image, pixels.
-  float pixels_per_unit;
+  vec2 pixels_per_unit;  // To the right and downwards, of the plane's x and y.
   uint piece_first;  // The decal's texels that are bound: what they give is added to what earlier pieces gave.
   uint piece_size;
   uint piece_flags;
@@ -86,7 +86,7 @@ struct TransferConstants {
 #ifdef __cplusplus
 static_assert(sizeof(RasterJob) == 48 && offsetof(RasterJob, key) == 36);
 static_assert(sizeof(FaceMap) == 64 && offsetof(FaceMap, axis) == 40 && offsetof(FaceMap, level) == 48);
-static_assert(sizeof(TransferConstants) == 88 && offsetof(TransferConstants, half_size) == 64);
+static_assert(sizeof(TransferConstants) == 92 && offsetof(TransferConstants, half_size) == 64);
 }  // namespace applique::shader
 #endif
 #undef APPLIQUE_CONST

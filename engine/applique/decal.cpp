@@ -175,7 +175,7 @@ class Solver {
                             feature_name(input_, i), feature_name(input_, j)));
   }
 
-  /// Embeds, aligns and warps the disc as it is: points_ and built_.
+  /// Embeds, aligns and warps the disc as it is: points_ and warp_.
   Result<void> parameterize(const ImmersedDisc& disc, const Growth& growth, const EmbedOptions& options) {
     ++map_.solves;
     std::vector<Vec2> features(targets_.size());
@@ -263,11 +263,11 @@ class Solver {
   void warp_points(const ImmersedDisc& disc, const Growth& growth, const std::vector<Vec2>& plane,
                    const std::vector<Vec2>& features) {
     find_influence(disc, growth);
-    built_ = build_warp(features, targets_, map_.graph, probes(features), groups_);
+    warp_ = build_warp(features, targets_, map_.graph, probes(features), groups_);
     const int refreshes = groups_.count == 1 ? 0 : settled_ ? most_refreshes : growing_refreshes;
     for (int refresh = 0; refresh <= refreshes; ++refresh) {
       if (refresh > 0) find_influence(disc, growth);
-      const std::vector<Vec2> image = warp_all(built_.warp, plane, influence_);
+      const std::vector<Vec2> image = warp_all(warp_, plane, influence_);
       double moved = 0;
       for (std::size_t v = 0; v < image.size(); ++v) {
         Vec2& at = points_[PatchVertexId(v)].image;
@@ -334,7 +334,7 @@ class Solver {
       const double settled = exactly ? 0 : few_changes * static_cast<double>(disc.faces().size());
       if (static_cast<double>(added + peeled) <= settled) {
         // Thin patches mislead: what they say of the features' order counts once the patch is grown.
-        if (mirrored_) return tl::unexpected(mirrored(input_));
+        if (mirrored_) return fail_mirrored(input_);
         if (energy != options_.energy) {
           energy = options_.energy;
         } else if (padded) {
@@ -407,11 +407,11 @@ class Solver {
       step.features.push_back(
           interpolate(disc, growth.feature_faces()[k], input_.features[k].surface, step.plane.raw()));
     step.contour = divided_contour();
-    if (built_.warp.steps > 0) {
+    if (warp_.steps > 0) {
       std::vector<double> influence(groups_.count);
       for (Vec2& z : step.contour) {
         if (groups_.count > 1) influence_field_->at(z, influence);
-        z = built_.warp.backward(z, influence);
+        z = warp_.backward(z, influence);
       }
     }
     options_.trace->steps.push_back(std::move(step));
@@ -454,9 +454,11 @@ class Solver {
     unfolded_ = folds(map_);
     for (PatchVertexId v : ids<PatchVertexId>(points_.size()))
       points_[v].plane = points_[v].image = unfolded.image[v.value];
-    built_.warp = {};
+    warp_ = {};
     groups_ = {};
+    WarpStress stress = std::move(map_.stress);  // of the warp that there was
     describe(disc, growth);
+    map_.stress = std::move(stress);
   }
 
   /// The decal as it is: all of the map but its warnings.
@@ -475,7 +477,7 @@ class Solver {
       map_.plane.push_back(point.plane);
       map_.image.push_back(point.image);
     }
-    map_.warp = built_.warp;
+    map_.warp = warp_;
     map_.groups = groups_.count;
     map_.feature_groups = groups_.of;
     map_.influence = groups_.count == 1 ? std::vector<double>(map_.patch.vertices.size(), 1) : influence_;
@@ -483,16 +485,18 @@ class Solver {
     mark_linear_faces(growth);
     map_.quality = measure_quality(surface_, map_.patch, map_.plane, map_.image, map_.textured, map_.warp,
                                    input_.region, map_.influence);
+    std::vector<Vec2> places;
     for (std::size_t k = 0; k < targets_.size(); ++k) {
       const auto& corners = disc.faces()[growth.feature_faces()[k]].vertices;
       const std::vector<double> influence =
           map_.influence_at(corners, input_.features[k].surface.barycentric);
-      const Vec2 at = map_.warp(
-          interpolate(disc, growth.feature_faces()[k], input_.features[k].surface, map_.plane.raw()),
-          influence);
-      map_.quality.feature_residual.push_back(std::abs(at - targets_[k]) *
+      places.push_back(
+          interpolate(disc, growth.feature_faces()[k], input_.features[k].surface, map_.plane.raw()));
+      map_.quality.feature_residual.push_back(std::abs(map_.warp(places[k], influence) - targets_[k]) *
                                               input_.region.frame().pixels_per_unit());
     }
+    map_.stress =
+        measure_stress(places, targets_, warp_pairs(map_.graph, targets_.size(), groups_), map_.warp);
   }
 
   void order_sheets(const Growth& growth) {
@@ -581,12 +585,7 @@ class Solver {
     }
     if (rung_ == EmbeddingRung::circle)
       add("embedding_on_circle", "the conformal map folded; a flip-free one took its place");
-    for (const PairStress& stress : built_.stressed)
-      add("feature_stress",
-          fmt::format(
-              "{} and {} ask for a scale of {:.2f} and a turn of {:.0f} degrees against their surroundings",
-              feature_name(input_, stress.pair[0]), feature_name(input_, stress.pair[1]), stress.scale,
-              stress.turn * 180 / 3.141592653589793));
+    for (Warning& warning : stress_warnings(input_, map_)) map_.warnings.push_back(std::move(warning));
   }
 
   const SurfaceMesh& surface_;
@@ -597,7 +596,7 @@ class Solver {
   BridgedSurface bridged_;
   std::vector<Vec2> targets_;  ///< Features in the image, plane units.
   PatchPoints points_;
-  BuiltWarp built_;
+  Warp warp_;
   bool settled_ = false;   ///< The patch is not going to grow any more.
   bool mirrored_ = false;  ///< By the last embedding, the features run the other way round on the surface.
   std::vector<std::uint32_t> clusters_;  ///< Group by feature, as the image has them; once asked for.

@@ -16,6 +16,7 @@
 #include "applique/rivals/rival_options.h"
 #include "applique/solve_trace.h"
 #include "applique/surface/surface_mesh.h"
+#include "applique/warp/stress.h"
 #include "applique/warp/warp.h"
 
 namespace applique {
@@ -92,6 +93,7 @@ struct DecalMap {
   FeatureGraph graph;
   Coverage status = Coverage::not_converged;
   MapQuality quality;
+  WarpStress stress;  ///< What the features ask of `warp`; empty by methods that bend the image otherwise.
   SolveTimes times;
   int solves = 0;
   std::vector<Warning> warnings;

@@ -42,6 +42,15 @@ std::vector<Vec2> targets_of(const DecalInput& input) {
   return targets;
 }
 
+tl::unexpected<Error> fail_mirrored(const DecalInput& input) {
+  return fail(ErrorCode::features_mirrored,
+              fmt::format("decal '{}': the features 0 to {} run one way round in the image and the other way "
+                          "round on the surface, so that the image would have to be mirrored; swap the "
+                          "places of left and right, or {} \"mirrored\": true",
+                          input.name, input.features.size() - 1,
+                          input.region.frame().mirrored ? "leave out" : "give the decal"));
+}
+
 Result<void> check_input(const SurfaceMesh& surface, const DecalInput& input,
                          const std::vector<Vec2>& targets, Overlap overlap) {
   const std::string prefix = fmt::format("decal '{}': ", input.name);
@@ -119,15 +128,6 @@ Result<Vec3> lone_up(const DecalInput& input, const Vec3& normal) {
 double lone_scale(const DecalInput& input) {
   const ImageFrame& frame = input.region.frame();
   return frame.width / frame.pixels_per_unit() / input.lone->width;
-}
-
-Error mirrored(const DecalInput& input) {
-  return {
-      ErrorCode::features_mirrored,
-      fmt::format("decal '{}': the features 0 to {} run one way round in the image and the other way round "
-                  "on the surface, so that the image would have to be mirrored; swap the places of left "
-                  "and right, or mirror the image",
-                  input.name, input.features.size() - 1)};
 }
 
 Result<void> check_coverage(const DecalInput& input, double coverage) {

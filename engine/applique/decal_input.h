@@ -16,6 +16,10 @@ bool checks_patch(const SolveOptions& options);
 /// The features' image points in the plane.
 std::vector<Vec2> targets_of(const DecalInput& input);
 
+/// The features_mirrored of a decal whose features run one way round in the image and the other way round on
+/// the surface.
+tl::unexpected<Error> fail_mirrored(const DecalInput& input);
+
 /// What every method asks of its input. `targets`: the features' image points in the plane. Features may
 /// share a spot of the surface, not of the image, where the decal may lie over itself. Errors, each naming
 /// the decal and the features: feature_place_invalid, feature_outside_region, features_coincide,
@@ -28,9 +32,6 @@ Result<void> check_input(const SurfaceMesh& surface, const DecalInput& input,
 Result<Vec3> lone_up(const DecalInput& input, const Vec3& normal);
 /// Plane units per scene unit at a lone feature.
 double lone_scale(const DecalInput& input);
-
-/// Says that the features run the other way round on the surface (features_mirrored).
-Error mirrored(const DecalInput& input);
 /// Turns down a map that shows next to nothing of the region (not_solved).
 Result<void> check_coverage(const DecalInput& input, double coverage);
 

@@ -1,9 +1,12 @@
 #include "applique/decal_warnings.h"
 
 #include <algorithm>
+#include <limits>
+#include <numbers>
 
 #include <fmt/format.h>
 
+#include "applique/decal_input.h"
 #include "applique/rivals/rival_solver.h"
 
 namespace applique {
@@ -11,6 +14,12 @@ namespace {
 
 constexpr double most_coverage = 1.005;  // beyond it the map overlaps itself
 constexpr double high_stretch = 3;
+constexpr double far_shift = 0.25;  // of the region's diameter
+constexpr double infinite = std::numeric_limits<double>::infinity();
+
+double degrees(double radians) {
+  return radians * 180 / std::numbers::pi;
+}
 
 }  // namespace
 
@@ -74,6 +83,33 @@ std::vector<Warning> quality_warnings(const std::string& name, const DecalMap& m
         fmt::format("the image is stretched {:.1f} times as much as need be (L2); make it smaller for "
                     "this part of the model, or pin it where it is torn",
                     map.quality.l2_stretch));
+  return warnings;
+}
+
+std::vector<Warning> stress_warnings(const DecalInput& input, const DecalMap& map) {
+  const WarpStress& stress = map.stress;
+  const double most_shift = map.groups == 1 ? far_shift * input.region.diameter() : infinite;
+  std::vector<Warning> warnings;
+  const auto add = [&](const std::string& message) {
+    warnings.push_back({"feature_stress", fmt::format("decal '{}': {}", input.name, message)});
+  };
+  std::vector<char> told(stress.features.size(), 0);
+  for (std::size_t k = 0; k < stress.features.size(); ++k) {
+    const FeatureStress& feature = stress.features[k];
+    told[k] = feature.shift > most_shift || is_extreme(feature.scale, feature.turn);
+    if (told[k] != 0)
+      add(fmt::format(
+          "{} has to be moved by {:.0f} px, scaled by {:.2f} and turned by {:.0f} degrees against "
+          "its surroundings; check its place, or leave it out",
+          feature_name(input, k), feature.shift * input.region.frame().pixels_per_unit(), feature.scale,
+          degrees(feature.turn)));
+  }
+  for (const auto& [pair, scale, turn] : stress.pairs)
+    if (is_extreme(scale, turn) && told[pair[0]] == 0 && told[pair[1]] == 0)
+      add(
+          fmt::format("{} and {} ask for a scale of {:.2f} and a turn of {:.0f} degrees against their "
+                      "surroundings; check that they are not swapped",
+                      feature_name(input, pair[0]), feature_name(input, pair[1]), scale, degrees(turn)));
   return warnings;
 }
 

@@ -13,4 +13,10 @@ namespace applique {
 std::vector<Warning> quality_warnings(const std::string& name, const DecalMap& map,
                                       const SolveOptions& options);
 
+/// A feature_stress for each feature that the warp must scale or turn beyond is_extreme(), or move by more
+/// than a quarter of the region's diameter; and for each pair beyond it of features that are not told of
+/// already. Ribbons that bend in the plane move by an eighth in good faith, and those that lie over
+/// themselves, in groups, by any length: there the way does not count.
+std::vector<Warning> stress_warnings(const DecalInput& input, const DecalMap& map);
+
 }  // namespace applique

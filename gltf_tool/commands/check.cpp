@@ -24,11 +24,14 @@ CLI::App* add_check_command(CLI::App& app, CheckArguments& arguments) {
   CLI::App* command =
       add_subcommand(app, "check", "Solve the geometry of a job without baking it",
                      "  applique check job.json\n"
-                     "  applique check job.json --report report.json --dump-region regions.json");
+                     "  applique check job.json --report report.json --dump-region regions.json\n"
+                     "  applique check job.json --suggest");
   command->add_option("JOB", arguments.job, "The job file")->required();
   command->add_option("--report", arguments.report, "Write a report (JSON)");
   command->add_option("--dump-region", arguments.dump_region,
                       "Write the contour of each decal (JSON), fit for a \"region\" of a job file");
+  command->add_flag("--suggest", arguments.suggest,
+                    "Name the further feature that would lower the stretch most, and the one too many");
   return command;
 }
 
@@ -46,10 +49,13 @@ Result<void> run_check(const CheckArguments& arguments, const CommonArguments& c
   SolvedJob solved;
   {
     Progress progress(!common.quiet);
-    APPLIQUE_TRY(solved, solve_job(job, show_stages(progress, 0, 1)));
+    const double solve_share = arguments.suggest ? 0.1 : 1;
+    APPLIQUE_TRY(solved, solve_job(job, show_stages(progress, 0, solve_share)));
+    if (arguments.suggest) suggest_features(solved, show_stages(progress, solve_share, 1 - solve_share));
   }
   log_warnings(solved);
   log_decals(solved);
+  log_suggestions(solved);
 
   if (arguments.dump_region) APPLIQUE_CHECK(write_json(*arguments.dump_region, regions_of(solved)));
   if (arguments.report) {

@@ -15,7 +15,8 @@ struct CheckArguments {
   std::filesystem::path job;
   std::optional<std::filesystem::path> report;  ///< JSON, report.schema.json.
   std::optional<std::filesystem::path>
-      dump_region;  ///< JSON: for each decal's name a "region" for a job file.
+      dump_region;       ///< JSON: for each decal's name a "region" for a job file.
+  bool suggest = false;  ///< Look for features that would lower the stretch.
 };
 
 CLI::App* add_check_command(CLI::App& app, CheckArguments& arguments);

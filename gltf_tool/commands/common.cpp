@@ -8,6 +8,7 @@
 
 #include "output_file.h"
 #include "progress.h"
+#include "report.h"
 
 namespace applique {
 namespace {
@@ -44,6 +45,22 @@ void log_decals(const SolvedJob& job) {
         "{}: {} features within {:.1g} px, {} triangles, {} flipped, L2 stretch {:.3f}, {:.2f} % covered",
         decal.job.name, decal.features.size(), residual, decal.map.patch.faces.size(),
         quality.flipped_plane + quality.flipped_image, quality.l2_stretch, 100 * quality.coverage);
+  }
+}
+
+void log_suggestions(const SolvedJob& job) {
+  for (const SolvedDecal& decal : job.decals) {
+    if (!decal.suggestion) continue;
+    const auto& [stretch, add, leave_out] = *decal.suggestion;
+    if (add)
+      spdlog::info("{}: a further feature lowers the L2 stretch from {:.4f} to {:.4f}: {}", decal.job.name,
+                   stretch, add->l2_stretch, feature_json(decal, add->feature).dump());
+    if (leave_out)
+      spdlog::info("{}: without feature {} the L2 stretch falls from {:.4f} to {:.4f}", decal.job.name,
+                   leave_out->feature, stretch, leave_out->l2_stretch);
+    if (!add && !leave_out)
+      spdlog::info("{}: no feature more or less was found to lower the L2 stretch of {:.4f}", decal.job.name,
+                   stretch);
   }
 }
 

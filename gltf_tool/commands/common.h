@@ -32,6 +32,10 @@ void log_warnings(const SolvedJob& job);
 /// One line about each decal: "tiger: 5 features within 2e-13 px, 5796 triangles, …".
 void log_decals(const SolvedJob& job);
 
+/// What was suggested for each decal, if it was asked for: the further feature as a job file has it, the one
+/// too many, and the L2 stretch with and without.
+void log_suggestions(const SolvedJob& job);
+
 /// A callback that shows stages on a progress bar, as the part of the whole work that begins at `start` and
 /// takes `share`, both 0..1; and logs them.
 StageCallback show_stages(class Progress& progress, double start, double share);

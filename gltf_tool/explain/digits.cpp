@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include <fmt/format.h>
+
 namespace applique {
 namespace {
 
@@ -57,21 +59,30 @@ std::array<Strokes, 10> make_digits() {
   return digits;
 }
 
-}  // namespace
-
-void draw_number(Canvas& canvas, std::size_t number, Vec2 centre, double height, const Paint& paint) {
+/// Digits and points, from their upper left corner on.
+void draw_text(Canvas& canvas, const std::string& text, Vec2 corner, double height, const Paint& paint) {
   static const std::array<Strokes, 10> digits = make_digits();
-  const std::string text = std::to_string(number);
-  const double width = static_cast<double>(text.size()) * (digit_width + spacing) - spacing;
-  Vec2 corner = centre - 0.5 * height * Vec2(width, 1);
-  for (const char digit : text) {
-    for (const Outline& stroke : digits[static_cast<std::size_t>(digit - '0')]) {
+  static const Strokes point = {{{0, 0.95}, {0, 1}}};
+  for (const char letter : text) {
+    for (const Outline& stroke : letter == '.' ? point : digits[static_cast<std::size_t>(letter - '0')]) {
       Outline line;
       for (const Vec2 p : stroke) line.push_back(corner + height * p);
       canvas.line(line, weight * height, paint);
     }
-    corner += height * (digit_width + spacing);
+    corner += height * ((letter == '.' ? 0 : digit_width) + spacing);
   }
+}
+
+}  // namespace
+
+void draw_number(Canvas& canvas, std::size_t number, Vec2 centre, double height, const Paint& paint) {
+  const std::string text = std::to_string(number);
+  const double width = static_cast<double>(text.size()) * (digit_width + spacing) - spacing;
+  draw_text(canvas, text, centre - 0.5 * height * Vec2(width, 1), height, paint);
+}
+
+void draw_decimal(Canvas& canvas, double number, Vec2 start, double height, const Paint& paint) {
+  draw_text(canvas, fmt::format("{:.2f}", number), start - Vec2(0, 0.5 * height), height, paint);
 }
 
 }  // namespace applique

@@ -10,6 +10,7 @@
 #include "applique/region/triangulation.h"
 
 #include "explain/digits.h"
+#include "explain/distortion.h"
 #include "explain/image_view.h"
 #include "explain/model_view.h"
 #include "explain/palette.h"
@@ -24,6 +25,8 @@ using Step = SolveTrace::Step;
 constexpr double faded = 0.45;            // how much of the image is left under drawings
 constexpr double grid_spacing = 0.25;     // plane units: an eighth of the image's longer side
 constexpr std::size_t growth_frames = 6;  // at most, when no step is named
+
+constexpr double legend_share = 0.3;  // of a panel's height
 
 constexpr double group_strength = 0.7;  // of a group's colour on white
 
@@ -71,6 +74,9 @@ class Picture {
         break;
       case Stage::patch:
         APPLIQUE_CHECK(draw_final_patch());
+        break;
+      case Stage::distortion:
+        APPLIQUE_CHECK(draw_both_distortions());
         break;
     }
     Image image = canvas_.image();
@@ -316,6 +322,23 @@ class Picture {
     return {};
   }
 
+  /// Areas and angles, each on the model and in the image, with the meaning of the colours.
+  Result<void> draw_both_distortions() {
+    const auto panels = lay_out(options_.size, 2, 2 * image_aspect() + legend_share);
+    for (const auto& [kind, panel] :
+         {std::pair{Distortion::area, panels[0]}, std::pair{Distortion::angle, panels[1]}}) {
+      const DistortionPicture picture = paint_distortion(decal_, kind);
+      const double legend = legend_share * panel.size.imag();
+      const Vec2 half(0.5 * (panel.size.real() - legend), panel.size.imag());
+      ModelDrawing drawing;
+      drawing.painting = &picture.painting;
+      APPLIQUE_CHECK(draw_on_model({panel.low, half}, drawing));
+      draw_distortion(canvas_, decal_, picture, {panel.low + half.real(), half});
+      draw_legend(canvas_, picture, {panel.low + 2 * half.real(), {legend, panel.size.imag()}});
+    }
+    return {};
+  }
+
   const Model& model_;
   const SolvedDecal& decal_;
   const Device* device_;
@@ -327,10 +350,10 @@ class Picture {
 }  // namespace
 
 const std::vector<StageName>& stage_names() {
-  static const std::vector<StageName> names = {{"region", Stage::region},       {"graph", Stage::graph},
-                                               {"paths", Stage::paths},         {"seed", Stage::seed},
-                                               {"growth", Stage::growth},       {"warp", Stage::warp},
-                                               {"influence", Stage::influence}, {"patch", Stage::patch}};
+  static const std::vector<StageName> names = {
+      {"region", Stage::region},       {"graph", Stage::graph},   {"paths", Stage::paths},
+      {"seed", Stage::seed},           {"growth", Stage::growth}, {"warp", Stage::warp},
+      {"influence", Stage::influence}, {"patch", Stage::patch},   {"distortion", Stage::distortion}};
   return names;
 }
 
@@ -339,6 +362,7 @@ bool shows_model(const ExplainOptions& options) {
     case Stage::paths:
     case Stage::seed:
     case Stage::patch:
+    case Stage::distortion:
       return true;
     case Stage::growth:
       return options.step.has_value();

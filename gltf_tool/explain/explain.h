@@ -15,14 +15,15 @@ namespace applique {
 
 /// What a picture explains.
 enum class Stage {
-  region,     ///< Contour and features, pairs, triangulation, groups (Fig. 13).
-  graph,      ///< Visible pairs, the planar graph, the tree (Fig. 3 of the paper).
-  paths,      ///< The tree in the image, and as shortest paths on the model (Fig. 5).
-  seed,       ///< The first patch on the model, and its embedding (Fig. 8).
-  growth,     ///< The embedded patch and the warped contour, step by step (Fig. 9, 15 to 17).
-  warp,       ///< The image and what the warp makes of it in the plane (Fig. 12, 20).
-  influence,  ///< Where which group moves the image; its segments (Fig. 13).
-  patch,      ///< The final patch on the model, and in texture coordinates (Fig. 22).
+  region,      ///< Contour and features, pairs, triangulation, groups (Fig. 13).
+  graph,       ///< Visible pairs, the planar graph, the tree (Fig. 3 of the paper).
+  paths,       ///< The tree in the image, and as shortest paths on the model (Fig. 5).
+  seed,        ///< The first patch on the model, and its embedding (Fig. 8).
+  growth,      ///< The embedded patch and the warped contour, step by step (Fig. 9, 15 to 17).
+  warp,        ///< The image and what the warp makes of it in the plane (Fig. 12, 20).
+  influence,   ///< Where which group moves the image; its segments (Fig. 13).
+  patch,       ///< The final patch on the model, and in texture coordinates (Fig. 22).
+  distortion,  ///< How the map changes areas (above) and angles (below), on the model and in the image.
 };
 
 struct StageName {

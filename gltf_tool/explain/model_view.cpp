@@ -11,6 +11,7 @@
 
 #include "decal_view.h"
 #include "explain/palette.h"
+#include "overlay_mesh.h"
 
 namespace applique {
 namespace {
@@ -89,6 +90,21 @@ RenderMesh tubes(const SurfaceLines& lines, double radius) {
   return mesh;
 }
 
+/// The decal's own mesh with another picture on it.
+RenderMesh painted_decal(const Model& model, const SolvedDecal& decal, const Image& painting) {
+  const OverlayMesh overlay = build_overlay_mesh(model, decal, default_offset(model));
+  RenderMesh mesh;
+  for (const Vec3& position : overlay.positions) mesh.positions.push_back(to_floats(position));
+  for (const Vec3& normal : overlay.normals) mesh.normals.push_back(to_floats(normal));
+  for (const auto& uv : overlay.uvs)
+    mesh.uvs.push_back({static_cast<float>(uv[0]), static_cast<float>(uv[1])});
+  mesh.triangles = overlay.triangles;
+  mesh.base_colour = &painting;
+  mesh.alpha_mode = AlphaMode::blend;
+  mesh.wrap_u = mesh.wrap_v = WrapMode::clamp;
+  return mesh;
+}
+
 /// Scene units a pixel at the camera's target.
 double pixel_size(const Camera& camera, double height) {
   const double half = std::tan(camera.vertical_fov * std::numbers::pi / 360);
@@ -129,6 +145,7 @@ Result<void> draw_model(draw::Canvas& canvas, const Device& device, const Model&
                         const SolvedDecal& decal, const ModelDrawing& drawing, const Camera& camera,
                         const Box& box) {
   std::vector<RenderMesh> meshes = tinted_parts(model, decal, drawing.tints);
+  if (drawing.painting != nullptr) meshes.push_back(painted_decal(model, decal, *drawing.painting));
   const double pixel = pixel_size(camera, box.size.imag());
   for (const SurfaceLines& lines : drawing.lines)
     if (!lines.lines.empty()) meshes.push_back(tubes(lines, 0.5 * lines.width * pixel));

@@ -30,7 +30,8 @@ struct SurfaceTint {
 struct ModelDrawing {
   std::vector<SurfaceTint> tints;  ///< Where they overlap, later ones count.
   std::vector<SurfaceLines> lines;
-  bool features = true;  ///< Numbered; pale where the model hides them.
+  const Image* painting = nullptr;  ///< Stuck on in place of the decal's image; null: none.
+  bool features = true;             ///< Numbered; pale where the model hides them.
 };
 
 /// Looks straight at the decal, with some of the model around it.

@@ -202,6 +202,30 @@ TEST_F(BakeTest, PutsTheImageThereAndNowhereElse) {
 }
 
 /// Two nodes, meshes and materials that meet at x = 0: one surface to a decal, which lies half on each.
+/// A mirrored decal of the mirrored image is the image.
+TEST_F(BakeTest, MirroredTwiceIsPlain) {
+  Image turned = make_quarters();
+  for (int y = 0; y < image_size; ++y)
+    for (int x = 0; x < image_size; ++x) {
+      const auto colour = colour_at(make_quarters(), image_size - 1 - x, y);
+      std::copy(colour.begin(), colour.end(), turned.pixel(x, y));
+    }
+  write_png(folder_ / "turned.png", turned);
+  json job = job_at(-2, 0);
+  job["decals"][0]["image"] = "turned.png";
+  job["decals"][0]["mirrored"] = true;
+  for (json& feature : job["decals"][0]["features"])
+    feature["image"][0] = image_size - feature["image"][0].get<int>();
+  const CommandResult result = bake(job);
+  ASSERT_EQ(result.status, 0) << result.err;
+  const auto model = load_model(folder_ / "out.glb");
+  ASSERT_TRUE(model) << model.error().message;
+  const auto texture =
+      load_model_image(*model, *model->materials[*part_named(*model, "Left").material].image);
+  ASSERT_TRUE(texture);
+  expect_quarters(*texture, &texture_);
+}
+
 TEST_F(BakeTest, CrossesFromOneMaterialToAnother) {
   write_small_model(folder_ / "model.glb",
                     {make_plane("Left", 8, -1),
@@ -388,6 +412,43 @@ TEST_F(BakeTest, CheckReportsTheSameGeometryAndDumpsTheRegion) {
   folder_.write("job.json", job);
   ASSERT_EQ(folder_.run("check job.json --report report.json").status, 0);
   EXPECT_NEAR(valid_report()["decals"][0]["area"].get<double>(), 56.0 * 56 / 64 / 64, 1e-9);
+}
+
+/// The suggested feature, pasted into the job, does what the report says; so does leaving one out.
+TEST_F(BakeTest, SuggestionsHoldWhatTheyPromise) {
+  const auto l2_of = [&](const json& job, const std::string& arguments) {
+    folder_.write("job.json", job);
+    const CommandResult result = folder_.run("check job.json --report report.json " + arguments);
+    EXPECT_EQ(result.status, 0) << result.err;
+    return valid_report()["decals"][0]["stretch"]["l2"].get<double>();
+  };
+  write_small_model(folder_ / "fine.glb", {make_plane("Fine", 40)}, {{"plain", std::nullopt, {1, 1, 1, 1}}});
+  json job = job_at(0, 0);
+  job["model"] = "fine.glb";
+  json& features = job["decals"][0]["features"];
+  features.clear();
+  for (const auto& [x, y] : {std::pair{32, 32}, {16, 16}, {48, 16}, {48, 48}, {16, 48}})
+    features.push_back({{"image", {x, y}}, {"position", {(x - 32) / 64.0, (32 - y) / 64.0, 0}}});
+  features[0]["position"][0] = 0.075;
+  const double before = l2_of(job, "");
+  EXPECT_TRUE(valid_report()["decals"][0]["suggestions"].is_null());
+  l2_of(job, "--suggest");
+  const json suggestions = valid_report()["decals"][0]["suggestions"];
+  EXPECT_NEAR(suggestions["l2"].get<double>(), before, 1e-12);
+  ASSERT_TRUE(suggestions["add"].is_object());
+  ASSERT_TRUE(suggestions["leave_out"].is_object());
+  EXPECT_EQ(suggestions["leave_out"]["feature"], 0);
+
+  json with = job;
+  json further = suggestions["add"];
+  further.erase("l2");
+  with["decals"][0]["features"].push_back(further);
+  const double after = l2_of(with, "");
+  EXPECT_LT(after, 0.999 * before);
+  EXPECT_NEAR(after, suggestions["add"]["l2"].get<double>(), 1e-6);
+  json without = job;
+  without["decals"][0]["features"].erase(0);
+  EXPECT_NEAR(l2_of(without, ""), suggestions["leave_out"]["l2"].get<double>(), 1e-6);
 }
 
 TEST_F(BakeTest, InspectTellsWhatIsInTheModel) {

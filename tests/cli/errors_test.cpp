@@ -97,7 +97,13 @@ TEST_F(ErrorsTest, MirroredCorrespondences) {
   json job = good_job();
   job["decals"][0]["features"] = {feature(16, 16, -1.75, 0.25), feature(48, 16, -2.25, 0.25),
                                   feature(32, 48, -2, -0.25)};
-  expect_failure(job, 3, {"'crest'", "mirrored"});
+  expect_failure(job, 3, {"'crest'", "give the decal \"mirrored\": true"});
+  job["decals"][0]["mirrored"] = true;
+  folder_.write("job.json", job);
+  EXPECT_EQ(folder_.run("check job.json").status, 0);
+  job["decals"][0]["features"] = {feature(16, 16, -2.25, 0.25), feature(48, 16, -1.75, 0.25),
+                                  feature(32, 48, -2, -0.25)};
+  expect_failure(job, 3, {"'crest'", "leave out \"mirrored\": true"});
 }
 
 TEST_F(ErrorsTest, PositionTooFarFromTheSurface) {

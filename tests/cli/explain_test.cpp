@@ -116,6 +116,15 @@ TEST_F(ExplainTest, DrawsThePatchOnTheModelAndFlat) {
   EXPECT_GT(bluish(explain("patch")), 2000u) << "the lit patch on the model, in the left half";
 }
 
+/// The moved feature enlarges the image on its one side and shrinks it on the other.
+TEST_F(ExplainTest, PaintsTheDistortion) {
+  const Image picture = explain("distortion");
+  EXPECT_GT(share_of(picture, ramp_colour(palette::diverging, 0.25), 0.1), 0.005) << "shrunk";
+  EXPECT_GT(share_of(picture, ramp_colour(palette::diverging, 0.75), 0.1), 0.005) << "enlarged";
+  EXPECT_GT(share_of(picture, ramp_colour(palette::rising, 0.5), 0.1), 0.005) << "sheared";
+  EXPECT_EQ(share_of(picture, palette::flipped, 0.02), 0) << "turned over";
+}
+
 TEST_F(ExplainTest, StepsOfTheGrowthDiffer) {
   const Image first = explain("growth --step 0"), second = explain("growth --step 1");
   EXPECT_NE(first.rgba, second.rgba);
@@ -123,7 +132,8 @@ TEST_F(ExplainTest, StepsOfTheGrowthDiffer) {
 
 TEST_F(ExplainTest, DrawsThePapersMethodToo) {
   write_job("paper");
-  for (const char* stage : {"region", "graph", "paths", "seed", "growth", "warp", "influence", "patch"})
+  for (const char* stage :
+       {"region", "graph", "paths", "seed", "growth", "warp", "influence", "patch", "distortion"})
     EXPECT_LT(share_of(explain(stage), palette::white), 0.99) << stage;
 }
 

@@ -7,6 +7,8 @@
 
 #include <gtest/gtest.h>
 
+#include "applique/decal_warnings.h"
+
 #include "support/shapes.h"
 
 namespace applique {
@@ -147,6 +149,96 @@ TEST(Decal, FeaturesAreExactOnABump) {
     EXPECT_EQ(map->quality.flipped_image, 0u);
     for (double residual : map->quality.feature_residual) EXPECT_LT(residual, 1e-8);
   }
+}
+
+/// The image of a mirrored decal is turned over and so are its pixels: on the surface nothing changes.
+TEST(Decal, MirroredOfTheMirroredImageIsTheSame) {
+  const SurfaceMesh surface = shapes::bump(40, 0.6, 0.4).weld();
+  const std::vector<Pixel> contour = {{40, 60}, {470, 100}, {400, 480}, {230, 430}, {90, 490}};
+  const auto mirrored = [](Pixel at) { return Pixel{frame.width - at.x, at.y}; };
+  std::vector<Pixel> mirrored_contour;
+  for (const Pixel corner : contour) mirrored_contour.push_back(mirrored(corner));
+  std::vector<Pin> mirrored_pins = bent_pins();
+  for (Pin& pin : mirrored_pins) pin.image = mirrored(pin.image);
+  constexpr ImageFrame mirrored_frame = {frame.width, frame.height, true};
+
+  const auto plain = solve_decal(surface, decal(surface, *Region::from_contour(contour, frame), bent_pins()));
+  const DecalInput input =
+      decal(surface, *Region::from_contour(mirrored_contour, mirrored_frame), mirrored_pins);
+  const auto turned = solve_decal(surface, input);
+  ASSERT_TRUE(plain && turned);
+  expect_good(*turned);
+  ASSERT_EQ(turned->image.size(), plain->image.size());
+  for (PatchVertexId v : ids<PatchVertexId>(plain->image.size())) {
+    const Pixel here = mirrored_frame.to_pixel(turned->image[v]), there = frame.to_pixel(plain->image[v]);
+    EXPECT_NEAR(here.x, frame.width - there.x, 1e-9);
+    EXPECT_NEAR(here.y, there.y, 1e-9);
+  }
+  EXPECT_EQ(solve_decal(surface, decal(surface, rectangle(), mirrored_pins)).error().code,
+            ErrorCode::features_mirrored);
+}
+
+TEST(Decal, MirroredWithOneFeatureKeepsItsUp) {
+  const SurfaceMesh surface = shapes::plane(30, 30, 4, 4, 0.2).weld();
+  constexpr ImageFrame mirrored = {512, 512, true};
+  const Region whole = *Region::from_contour({{0, 0}, {512, 0}, {512, 512}, {0, 512}}, mirrored);
+  DecalInput input = decal(surface, whole, {{{256, 256}, {2, 2, 0}}});
+  input.lone = LoneFrame{2, {0, 1, 0}};
+  const auto map = solve_decal(surface, input);
+  ASSERT_TRUE(map.has_value()) << map.error().message;
+  expect_good(*map);
+  for (PatchVertexId v : ids<PatchVertexId>(map->image.size())) {
+    const Vec3& p = surface.positions[map->patch.vertices[v]];
+    const Pixel at = mirrored.to_pixel(map->image[v]);
+    EXPECT_NEAR(at.x, 256 - 256 * (p.x() - 2), 1e-5) << "the image's right is the surface's left";
+    EXPECT_NEAR(at.y, 256 - 256 * (p.y() - 2), 1e-5) << "up is up";
+  }
+}
+
+/// The stress tells what the warp does: nothing where the features are at ease, and with one of them moved
+/// aside on a plane that feature's shift, less the aligned rest.
+TEST(Decal, TellsWhatTheFeaturesAskOfTheWarp) {
+  const SurfaceMesh surface = shapes::plane(40, 40, 4, 4).weld();
+  const auto pins = [](double aside) {
+    std::vector<Pin> list;
+    for (const Pixel px : {Pixel{128, 128}, {384, 128}, {384, 384}, {128, 384}, {256, 256}})
+      list.push_back({px, {1 + px.x / 256, 3 - px.y / 256, 0}});
+    list.back().position.x() += aside;
+    return list;
+  };
+  const auto solve = [&](double aside) {
+    return *solve_decal(surface, decal(surface, rectangle(), pins(aside)));
+  };
+  const DecalMap at_ease = solve(0);
+  ASSERT_EQ(at_ease.stress.features.size(), 5u);
+  EXPECT_EQ(at_ease.stress.pairs.size(), 10u);
+  for (const FeatureStress& feature : at_ease.stress.features) {
+    EXPECT_LT(feature.shift, 1e-9);
+    EXPECT_NEAR(feature.scale, 1, 1e-9);
+  }
+  // The alignment takes a fifth of the way over and shrinks what is too long.
+  const DecalMap moved = solve(0.1);
+  EXPECT_NEAR(moved.stress.features[4].shift, 0.08 * 2 / 2.008, 1e-6);
+  EXPECT_TRUE(moved.warnings.empty());
+}
+
+/// Once for a feature, not again for its pairs; the way counts where the image does not lie over itself.
+TEST(Decal, WarnsOfWhatIsExtreme) {
+  const SurfaceMesh surface = shapes::plane(40, 40, 4, 4).weld();
+  const DecalInput input = decal(surface, rectangle(), std::vector<Pin>(4, Pin{{128, 128}, {2, 2, 0}}));
+  DecalMap map;
+  map.stress.features = {{0.1, 1, 0}, {0.1, 1.2, 2.3}, {0.1, 3, -1}, {0.8, 1, 0}};
+  map.stress.pairs = {{{0, 1}, 1, 2.5}, {{0, 2}, 0.2, 0}, {{0, 3}, 3.5, 2}};
+  const std::vector<Warning> warnings = stress_warnings(input, map);
+  ASSERT_EQ(warnings.size(), 3u);
+  for (const Warning& warning : warnings) EXPECT_EQ(warning.code, "feature_stress");
+  EXPECT_NE(warnings[0].message.find("feature 1 at"), std::string::npos);
+  EXPECT_NE(warnings[0].message.find("turned by 132 degrees"), std::string::npos);
+  EXPECT_NE(warnings[1].message.find("feature 3 at"), std::string::npos);
+  EXPECT_NE(warnings[1].message.find("moved by 205 px"), std::string::npos);
+  EXPECT_NE(warnings[2].message.find("feature 0 at (128.0, 128.0) and feature 2 at"), std::string::npos);
+  map.groups = 2;
+  EXPECT_EQ(stress_warnings(input, map).size(), 2u);
 }
 
 TEST(Decal, TracesWhatItWentThrough) {

@@ -103,6 +103,29 @@ TEST_F(GpuTransferTest, AgreesWhereTheWarpRunsAtEachTexel) {
   }
 }
 
+/// Both twins of a mirrored transfer find the same pixels, which are those of the plain one turned over.
+TEST_F(GpuTransferTest, MirrorsLikeTheCpu) {
+  GpuTransfer gpu = GpuTransfer::create(device()).value();
+  for (const int grid : {2, 8, 40}) {  // Refined faces, some of each, the warp at each texel.
+    SyntheticOptions options;
+    options.grid = grid;
+    SyntheticTransfer synthetic = synthetic_transfer(6, options);
+    Image plain_texture = noise_texture(1, 256, 256);
+    const auto plain = gpu.run(synthetic.transfer, plain_texture, true);
+    synthetic.image->frame.mirrored = true;
+    SCOPED_TRACE(grid);
+    expect_agreement(compare(gpu, synthetic.transfer, noise_texture(1, 256, 256)));
+    Image texture = noise_texture(1, 256, 256);
+    const auto mirrored = gpu.run(synthetic.transfer, texture, true);
+    ASSERT_TRUE(plain && mirrored);
+    ASSERT_EQ(mirrored->samples.size(), plain->samples.size());
+    for (std::size_t i = 0; i < plain->samples.size(); ++i) {
+      ASSERT_NEAR(mirrored->samples[i].image.x, options.image - plain->samples[i].image.x, 0.005);
+      ASSERT_NEAR(mirrored->samples[i].image.y, plain->samples[i].image.y, 0.005);
+    }
+  }
+}
+
 /// The image's 600 x 600 pixels take 3.8 MB: four pieces and, where the tiles are cut as well, 59.
 TEST_F(GpuTransferTest, GoesThroughALargeImageInPieces) {
   for (const std::uint64_t bytes : {1U << 20, 1U << 16}) {

@@ -54,7 +54,7 @@ TEST_F(JobTest, ReadsEveryField) {
   const auto job = load_text(R"({
     "version": 1, "model": "models/head.glb", "texture_size": 512,
     "decals": [
-      { "name": "a", "image": "a.png", "region": { "contour": [[0, 0], [10, 0], [10, 20]] },
+      { "name": "a", "image": "a.png", "mirrored": true, "region": { "contour": [[0, 0], [10, 0], [10, 20]] },
         "features": [
           { "image": [1, 2], "position": [1, 2, 3], "max_distance": 0.5, "depth": 2 },
           { "image": [3, 4], "uv": [0.1, 0.2], "material": 3 },
@@ -75,6 +75,7 @@ TEST_F(JobTest, ReadsEveryField) {
 
   const DecalJob& a = job->decals[0];
   EXPECT_EQ(a.image, folder_ / "a.png");
+  EXPECT_TRUE(a.mirrored);
   EXPECT_EQ(std::get<ContourRegion>(a.region).contour[2].y, 20);
   ASSERT_EQ(a.features.size(), 5u);
   EXPECT_EQ(a.features[0].depth, 2);
@@ -129,6 +130,7 @@ TEST_F(JobTest, LeavesOutWhatMayBeLeftOut) {
   ASSERT_TRUE(job) << job.error().message;
   const DecalJob& decal = job->decals[0];
   EXPECT_EQ(job->texture_size, 2048);
+  EXPECT_FALSE(decal.mirrored);
   EXPECT_TRUE(std::holds_alternative<AutomaticRegion>(decal.region));
   EXPECT_FALSE(std::get<PositionPlace>(decal.features[0].place).max_distance);
   EXPECT_EQ(decal.opacity, 1);

@@ -71,7 +71,7 @@ TEST(ForwardWarp, FindsThePairThatCollides) {
 TEST(ForwardWarp, FoldsByThePapersRuleWhereArmsCrossAndNotByTheProductRule) {
   const CrossedArms arms;
   ForwardWarp paper{arms.from, arms.to, arms.graph.visible, arms.groups, arms.group};
-  Warp product = build_warp(arms.from, arms.to, arms.graph, {}).warp;
+  Warp product = build_warp(arms.from, arms.to, arms.graph, {});
   product.groups = arms.groups;
   product.group = arms.group;
   int before = 0;

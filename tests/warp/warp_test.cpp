@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "applique/warp/build_warp.h"
+#include "applique/warp/stress.h"
 #include "applique/warp/trajectory.h"
 
 namespace applique {
@@ -39,8 +40,8 @@ TEST(Warp, IsExactAtTheFeatures) {
     const std::vector<Vec2> from = random_points(random, n, 0.9);
     std::vector<Vec2> to = from;
     for (Vec2& z : to) z += Vec2(shift(random), shift(random));
-    const BuiltWarp built = build_warp(from, to, open_graph(static_cast<std::uint32_t>(n)), {});
-    for (int k = 0; k < n; ++k) EXPECT_LT(std::abs(built.warp(from[k]) - to[k]), 1e-13);
+    const Warp built = build_warp(from, to, open_graph(static_cast<std::uint32_t>(n)), {});
+    for (int k = 0; k < n; ++k) EXPECT_LT(std::abs(built(from[k]) - to[k]), 1e-13);
   }
 }
 
@@ -51,9 +52,8 @@ TEST(Warp, ReproducesAnySimilarityEverywhere) {
     const Vec2 scale = std::polar(0.6 + 0.05 * run, 0.1 * run - 1), shift(0.3, -0.2);
     std::vector<Vec2> to;
     for (Vec2 z : from) to.push_back(scale * z + shift);
-    const BuiltWarp built = build_warp(from, to, open_graph(6), {});
-    for (Vec2 z : random_points(random, 10, 1))
-      EXPECT_LT(std::abs(built.warp(z) - (scale * z + shift)), 1e-12);
+    const Warp built = build_warp(from, to, open_graph(6), {});
+    for (Vec2 z : random_points(random, 10, 1)) EXPECT_LT(std::abs(built(z) - (scale * z + shift)), 1e-12);
   }
 }
 
@@ -63,9 +63,8 @@ TEST(Warp, TranslatesEveryPointUnderACommonTranslation) {
   const std::vector<Vec2> from = random_points(random, 7, 0.9);
   std::vector<Vec2> to = from;
   for (Vec2& z : to) z += Vec2(0.25, -0.5);
-  const BuiltWarp built = build_warp(from, to, open_graph(7), {});
-  for (Vec2 z : random_points(random, 12, 1))
-    EXPECT_LT(std::abs(built.warp(z) - z - Vec2(0.25, -0.5)), 1e-13);
+  const Warp built = build_warp(from, to, open_graph(7), {});
+  for (Vec2 z : random_points(random, 12, 1)) EXPECT_LT(std::abs(built(z) - z - Vec2(0.25, -0.5)), 1e-13);
 }
 
 std::vector<WarpProbe> probes_at(const std::vector<Vec2>& places) {
@@ -82,18 +81,18 @@ TEST(Warp, SwappingTheEndsInvertsIt) {
   for (Vec2& z : to) z += Vec2(shift(random), shift(random));
   const std::vector<Vec2> probes = random_points(random, 15, 1);
   const WarpOptions fine{1e-12, 256};
-  const BuiltWarp there = build_warp(from, to, open_graph(6), probes_at(probes), {}, fine);
-  const BuiltWarp back = build_warp(to, from, open_graph(6), probes_at(probes), {}, fine);
-  for (Vec2 z : probes) EXPECT_LT(std::abs(back.warp(there.warp(z)) - z), 1e-8);
+  const Warp there = build_warp(from, to, open_graph(6), probes_at(probes), {}, fine);
+  const Warp back = build_warp(to, from, open_graph(6), probes_at(probes), {}, fine);
+  for (Vec2 z : probes) EXPECT_LT(std::abs(back(there(z)) - z), 1e-8);
 }
 
 TEST(Warp, StepsAreRefinedUntilTheProbesRest) {
   std::mt19937 random(10);
   const std::vector<Vec2> from = random_points(random, 6, 0.9), to = random_points(random, 6, 0.9);
   const std::vector<Vec2> probes = random_points(random, 15, 1);
-  const BuiltWarp coarse = build_warp(from, to, open_graph(6), probes_at(probes), {}, {2e-5, 1024});
-  const BuiltWarp fine = build_warp(from, to, open_graph(6), probes_at(probes), {}, {1e-9, 8192});
-  for (Vec2 z : probes) EXPECT_LT(std::abs(coarse.warp(z) - fine.warp(z)), 4e-5);
+  const Warp coarse = build_warp(from, to, open_graph(6), probes_at(probes), {}, {2e-5, 1024});
+  const Warp fine = build_warp(from, to, open_graph(6), probes_at(probes), {}, {1e-9, 8192});
+  for (Vec2 z : probes) EXPECT_LT(std::abs(coarse(z) - fine(z)), 4e-5);
 }
 
 TEST(Warp, RunsBackwardsToo) {
@@ -103,24 +102,73 @@ TEST(Warp, RunsBackwardsToo) {
   std::uniform_real_distribution<double> shift(-0.1, 0.1);
   for (Vec2& z : to) z += Vec2(shift(random), shift(random));
   const std::vector<Vec2> places = random_points(random, 12, 1);
-  const Warp warp = build_warp(from, to, open_graph(6), probes_at(places)).warp;
+  const Warp warp = build_warp(from, to, open_graph(6), probes_at(places));
   for (const Vec2 z : places) EXPECT_LT(std::abs(warp.backward(warp(z)) - z), 1e-4);
   for (std::size_t k = 0; k < to.size(); ++k) EXPECT_LT(std::abs(warp.backward(to[k]) - from[k]), 1e-13);
 }
 
 TEST(Warp, OneAndTwoFeaturesNeedNone) {
-  EXPECT_EQ(build_warp(std::vector<Vec2>{{0, 0}}, std::vector<Vec2>{{1, 1}}, open_graph(1), {}).warp.steps,
-            0u);
+  EXPECT_EQ(build_warp(std::vector<Vec2>{{0, 0}}, std::vector<Vec2>{{1, 1}}, open_graph(1), {}).steps, 0u);
   const std::vector<Vec2> ends = {{0, 0}, {1, 1}};
-  EXPECT_EQ(build_warp(ends, ends, open_graph(2), {}).warp.steps, 0u);
+  EXPECT_EQ(build_warp(ends, ends, open_graph(2), {}).steps, 0u);
 }
 
 TEST(Warp, TakesCollinearFeatures) {
   const std::vector<Vec2> from = {{-0.8, 0}, {-0.1, 0}, {0.3, 0}, {0.9, 0}};
   const std::vector<Vec2> to = {{-0.7, 0.1}, {-0.2, -0.1}, {0.4, 0.05}, {0.8, 0}};
-  const BuiltWarp built = build_warp(from, to, open_graph(4), {});
-  for (std::size_t k = 0; k < from.size(); ++k) EXPECT_LT(std::abs(built.warp(from[k]) - to[k]), 1e-14);
-  EXPECT_LT(std::abs(built.warp({0.1, 0.9}) - Vec2(0.1, 0.9)), 0.5);
+  const Warp built = build_warp(from, to, open_graph(4), {});
+  for (std::size_t k = 0; k < from.size(); ++k) EXPECT_LT(std::abs(built(from[k]) - to[k]), 1e-14);
+  EXPECT_LT(std::abs(built({0.1, 0.9}) - Vec2(0.1, 0.9)), 0.5);
+}
+
+/// What is told of a feature is the warp's derivative there, by central differences.
+TEST(Stress, IsTheWarpsDerivativeAtAFeature) {
+  std::mt19937 random(17);
+  std::uniform_real_distribution<double> shift(-0.2, 0.2);
+  for (int run = 0; run < 20; ++run) {
+    const int n = 3 + run % 6;
+    const std::vector<Vec2> from = random_points(random, n, 0.9);
+    std::vector<Vec2> to = from;
+    for (Vec2& z : to) z += Vec2(shift(random), shift(random));
+    const FeatureGraph graph = open_graph(static_cast<std::uint32_t>(n));
+    std::vector<Vec2> near = from;
+    for (Vec2& z : near) z += 0.05;
+    const Warp warp = build_warp(from, to, graph, probes_at(near), {}, {1e-9, 1024});
+    const WarpStress stress = measure_stress(from, to, graph.visible, warp);
+    for (int k = 0; k < n; ++k) {
+      constexpr double step = 1e-5;
+      const Vec2 derivative = (warp(from[k] + step) - warp(from[k] - step)) / (2 * step);
+      const Vec2 told = std::polar(stress.features[k].scale, stress.features[k].turn);
+      EXPECT_LT(std::abs(derivative - told), 1e-4 * std::abs(told)) << run << ", " << k;
+      EXPECT_DOUBLE_EQ(stress.features[k].shift, std::abs(to[k] - from[k]));
+    }
+  }
+}
+
+/// A common similarity asks the same of every feature and of every pair.
+TEST(Stress, OfASimilarityIsTheSimilarity) {
+  std::mt19937 random(3);
+  const std::vector<Vec2> from = random_points(random, 6, 0.9);
+  const Vec2 scale = std::polar(1.4, 0.9);
+  std::vector<Vec2> to;
+  for (const Vec2 z : from) to.push_back(scale * z + Vec2(0.1, -0.2));
+  const FeatureGraph graph = open_graph(6);
+  const WarpStress stress =
+      measure_stress(from, to, graph.visible, build_warp(from, to, graph, {}, {}, {1e-9, 256}));
+  for (const FeatureStress& feature : stress.features) {
+    EXPECT_NEAR(feature.scale, 1.4, 2e-4);  // Simpson's error in four steps.
+    EXPECT_NEAR(feature.turn, 0.9, 2e-4);
+  }
+  ASSERT_EQ(stress.pairs.size(), 15u);
+  for (const PairStress& pair : stress.pairs) {
+    EXPECT_NEAR(pair.scale, 1.4, 1e-12);
+    EXPECT_NEAR(pair.turn, 0.9, 1e-12);
+  }
+  for (const FeatureStress& feature : measure_stress(from, from, graph.visible, {}).features) {
+    EXPECT_EQ(feature.scale, 1);
+    EXPECT_EQ(feature.turn, 0);
+    EXPECT_EQ(feature.shift, 0);
+  }
 }
 
 /// Two features that swap places run straight into one another; turning keyframes keep them apart.
@@ -139,9 +187,11 @@ TEST(Trajectory, TurnsWhereStraightLinesWouldCollide) {
   EXPECT_GT(closest_approach(keyframes, {4, 5}), 0.35);
   EXPECT_EQ(keyframes.front()[4], from[4]);
   EXPECT_EQ(keyframes.back()[5], to[5]);
-  const BuiltWarp built = build_warp(from, to, graph, {});
-  for (std::size_t k = 0; k < from.size(); ++k) EXPECT_LT(std::abs(built.warp(from[k]) - to[k]), 1e-12);
-  EXPECT_FALSE(built.stressed.empty());
+  const Warp built = build_warp(from, to, graph, {});
+  for (std::size_t k = 0; k < from.size(); ++k) EXPECT_LT(std::abs(built(from[k]) - to[k]), 1e-12);
+  const WarpStress stress = measure_stress(from, to, warp_pairs(graph, 6), built);
+  EXPECT_TRUE(std::any_of(stress.pairs.begin(), stress.pairs.end(),
+                          [](const PairStress& pair) { return is_extreme(pair.scale, pair.turn); }));
 }
 
 }  // namespace

@@ -319,7 +319,7 @@ Result<void> GpuTransfer::run_tile(Run& run, std::uint32_t sheet, const TexelRec
     constants.pairs = static_cast<std::uint32_t>(transfer.warp->pairs.size());
   }
   constants.half_size = to_floats({0.5 * image.frame.width, 0.5 * image.frame.height});
-  constants.pixels_per_unit = static_cast<float>(image.frame.pixels_per_unit());
+  constants.pixels_per_unit = to_floats({image.frame.pixels_along_x(), -image.frame.pixels_per_unit()});
 
   cover_.bind({{0, &owner_buffer}, {2, &job_buffer}});
   nearest_.bind({{0, &owner_buffer}, {1, &nearest_buffer}, {2, &near_block_buffer}});

@@ -8,22 +8,6 @@
 namespace applique {
 namespace {
 
-/// Singular values of the affine map that takes a plane triangle to a space triangle.
-struct Singular {
-  double larger, smaller;
-};
-
-Singular singular_values(const std::array<Vec3, 3>& q, const std::array<Vec2, 3>& p) {
-  const Vec2 e1 = p[1] - p[0], e2 = p[2] - p[0];
-  const double double_area = cross(e1, e2);
-  const Vec3 d1 = q[1] - q[0], d2 = q[2] - q[0];
-  const Vec3 s = (d1 * e2.imag() - d2 * e1.imag()) / double_area;
-  const Vec3 t = (d2 * e1.real() - d1 * e2.real()) / double_area;
-  const double a = s.squaredNorm(), b = s.dot(t), c = t.squaredNorm();
-  const double root = std::hypot(a - c, 2 * b);
-  return {std::sqrt(0.5 * (a + c + root)), std::sqrt(std::max(0.0, 0.5 * (a + c - root)))};
-}
-
 /// Whether the warp reverses orientation at a corner of the triangle or in its middle, by central
 /// differences. `influence` of the groups at each corner; linear between.
 bool turns_over(const Warp& warp, const std::array<Vec2, 3>& triangle,
@@ -61,6 +45,17 @@ std::vector<Vec2> clip(const std::vector<Vec2>& polygon, Vec2 a, Vec2 b) {
 
 }  // namespace
 
+SingularValues singular_values(const std::array<Vec3, 3>& corners, const std::array<Vec2, 3>& image) {
+  const Vec2 e1 = image[1] - image[0], e2 = image[2] - image[0];
+  const double double_area = cross(e1, e2);
+  const Vec3 d1 = corners[1] - corners[0], d2 = corners[2] - corners[0];
+  const Vec3 s = (d1 * e2.imag() - d2 * e1.imag()) / double_area;
+  const Vec3 t = (d2 * e1.real() - d1 * e2.real()) / double_area;
+  const double a = s.squaredNorm(), b = s.dot(t), c = t.squaredNorm();
+  const double root = std::hypot(a - c, 2 * b);
+  return {std::sqrt(0.5 * (a + c + root)), std::sqrt(std::max(0.0, 0.5 * (a + c - root)))};
+}
+
 double area_in_region(const Region& region, const std::array<Vec2, 3>& triangle) {
   const double whole = 0.5 * cross(triangle[1] - triangle[0], triangle[2] - triangle[0]);
   // The region has no holes: a triangle whose sides lie in it lies in it.
@@ -86,7 +81,7 @@ MapQuality measure_quality(const SurfaceMesh& surface, const Patch& patch,
                            : std::span<const double>();
   };
   struct Measured {
-    Singular singular;
+    SingularValues singular;
     double area;  ///< On the surface, under the region.
   };
   std::vector<Measured> measured;
@@ -117,7 +112,7 @@ MapQuality measure_quality(const SurfaceMesh& surface, const Patch& patch,
   const double normal = std::sqrt(image_area / quality.area);  // makes the total areas equal
   double l2 = 0, angle = 0, area_ratio = 0;
   for (const auto& [s, area] : measured) {
-    l2 += 0.5 * (s.larger * s.larger + s.smaller * s.smaller) * area;
+    l2 += s.squared_l2_stretch() * area;
     quality.linf_stretch = std::max(quality.linf_stretch, s.larger * normal);
     const double ratio = s.larger * s.smaller * normal * normal;
     angle += s.smaller > 0 ? s.larger / s.smaller * area : 0;

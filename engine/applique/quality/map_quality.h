@@ -13,6 +13,16 @@
 
 namespace applique {
 
+/// Singular values of the affine map that takes a triangle of the image to one of space.
+struct SingularValues {
+  double larger, smaller;  ///< Scene units per plane unit.
+
+  /// Of Sander et al. 2001: the root mean square.
+  [[nodiscard]] double squared_l2_stretch() const { return 0.5 * (larger * larger + smaller * smaller); }
+};
+/// The image's triangle has an area; a turned one has the values of its mirror image.
+SingularValues singular_values(const std::array<Vec3, 3>& corners, const std::array<Vec2, 3>& image);
+
 /// Quality of a map from the surface to the image, over the textured faces, each weighted by the share of it
 /// that lies in the region (§9 of the design). Stretch is that of Sander et al. 2001, normalised so that an
 /// isometry up to scale scores 1. Turned-over faces count as flips and are left out of the means.

@@ -44,7 +44,7 @@ Result<Similarity> place_in_image(const RivalTask& task, const std::vector<Vec2>
     const double scale = lone_scale(task.input);
     return Similarity{scale, target - scale * anchor};
   }
-  if (is_mirrored(features, task.targets)) return tl::unexpected(mirrored(task.input));
+  if (is_mirrored(features, task.targets)) return fail_mirrored(task.input);
   const Similarity fit = fit_similarity_about(task.anchor, features, task.targets);
   if (!(std::abs(fit.scale) > 0) || !std::isfinite(std::abs(fit.scale)))
     return fail(ErrorCode::not_solved,

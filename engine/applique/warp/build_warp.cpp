@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "applique/warp/trajectory.h"
 
@@ -12,21 +11,6 @@ namespace {
 constexpr std::uint32_t least_steps = 4;
 constexpr double still = 1e-13;     // plane units: a feature that moves less does not move
 constexpr double collision = 0.05;  // share of its length below which a pair is left out
-constexpr double extreme_scale = 4;
-constexpr double extreme_turn = 2 * std::numbers::pi / 3;
-
-/// Visible pairs, and for a feature that sees none its artificial ones. Those of groups that do not meet move
-/// nothing.
-std::vector<FeaturePair> warp_pairs(const FeatureGraph& graph, std::size_t features,
-                                    const FeatureGroups& groups) {
-  std::vector<FeaturePair> pairs = graph.visible;
-  std::erase_if(pairs, [&](const FeaturePair& pair) { return groups.apart(pair); });
-  std::vector<char> paired(features, false);
-  for (const auto& [i, j] : pairs) paired[i] = paired[j] = true;
-  for (const FeaturePair& pair : graph.artificial)
-    if (!paired[pair[0]] || !paired[pair[1]]) pairs.push_back(pair);
-  return pairs;
-}
 
 /// Leaves out pairs that nearly collide on the way, as long as both features keep another in their group.
 void drop_colliding(std::vector<FeaturePair>& pairs, const std::vector<std::vector<Vec2>>& keyframes,
@@ -81,37 +65,40 @@ Warp tabulate(const std::vector<std::vector<Vec2>>& keyframes, const std::vector
 
 }  // namespace
 
-BuiltWarp build_warp(std::span<const Vec2> from, std::span<const Vec2> to, const FeatureGraph& graph,
-                     std::span<const WarpProbe> probes, const FeatureGroups& groups,
-                     const WarpOptions& options) {
-  BuiltWarp built;
+std::vector<FeaturePair> warp_pairs(const FeatureGraph& graph, std::size_t features,
+                                    const FeatureGroups& groups) {
+  std::vector<FeaturePair> pairs = graph.visible;
+  std::erase_if(pairs, [&](const FeaturePair& pair) { return groups.apart(pair); });
+  std::vector<char> paired(features, false);
+  for (const auto& [i, j] : pairs) paired[i] = paired[j] = true;
+  for (const FeaturePair& pair : graph.artificial)
+    if (!paired[pair[0]] || !paired[pair[1]]) pairs.push_back(pair);
+  return pairs;
+}
+
+Warp build_warp(std::span<const Vec2> from, std::span<const Vec2> to, const FeatureGraph& graph,
+                std::span<const WarpProbe> probes, const FeatureGroups& groups, const WarpOptions& options) {
   bool moves = false;
   for (std::size_t k = 0; k < from.size(); ++k) moves = moves || std::abs(to[k] - from[k]) > still;
-  if (from.size() < 3 || !moves) return built;
+  if (from.size() < 3 || !moves) return {};
 
   std::vector<FeaturePair> pairs = warp_pairs(graph, from.size(), groups);
-  for (const FeaturePair& pair : pairs) {
-    const Vec2 ratio = (to[pair[1]] - to[pair[0]]) / (from[pair[1]] - from[pair[0]]);
-    const double scale = std::abs(ratio), turn = std::arg(ratio);
-    if (scale > extreme_scale || scale < 1 / extreme_scale || std::abs(turn) > extreme_turn)
-      built.stressed.push_back({pair, scale, turn});
-  }
   const auto keyframes = feature_trajectories(from, to, graph, pairs);
   drop_colliding(pairs, keyframes, groups);
 
   const auto pieces = static_cast<std::uint32_t>(keyframes.size() - 1);
   std::uint32_t steps = std::max(least_steps, pieces);
-  built.warp = tabulate(keyframes, pairs, steps, groups);
+  Warp warp = tabulate(keyframes, pairs, steps, groups);
   while (2 * steps <= options.max_steps) {
     Warp finer = tabulate(keyframes, pairs, 2 * steps, groups);
     double difference = 0;
     for (const auto& [plane, influence] : probes)
-      difference = std::max(difference, std::abs(finer(plane, influence) - built.warp(plane, influence)));
+      difference = std::max(difference, std::abs(finer(plane, influence) - warp(plane, influence)));
     if (difference <= options.tolerance) break;
     steps *= 2;
-    built.warp = std::move(finer);
+    warp = std::move(finer);
   }
-  return built;
+  return warp;
 }
 
 }  // namespace applique
