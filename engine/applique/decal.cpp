@@ -324,9 +324,9 @@ class Solver {
       if (map_.solves >= options_.max_solves || runs_over_itself(disc)) break;
       auto inside = growth.inside(points_);
       const std::size_t peeled = energy == Energy::conformal && !padded ? growth.peel(points_, inside) : 0;
-      // Where the patch lies over itself, or may come to, each face counts. Else it grows by a share of its
-      // own size, so that the number of embeddings does not follow the resolution; and what is still to come
-      // of a patch that hardly changes, the margin brings as well.
+      // Where the patch lies over itself, or may come to, each face counts. Else it may grow by a share of
+      // its own size, which saves embeddings until the prediction fails, after some 70 to 100 rings; and what
+      // is still to come of a patch that hardly changes, the margin brings as well.
       const bool exactly = padded || groups_.count > 1 || options_.overlap == Overlap::allow;
       const Growth::Limits limits{.share = exactly ? 0.0 : 1.0};
       const std::size_t added =
