@@ -1,0 +1,13 @@
+#include "compare/methods.h"
+
+namespace applique::compare {
+
+std::vector<Contender> all_methods() {
+  return {
+      {"isometric", {.method = Method::applique, .energy = Energy::isometric}},
+      {"conformal", {.method = Method::applique, .energy = Energy::conformal}},
+      {"paper", {.method = Method::paper, .energy = Energy::conformal}},
+  };
+}
+
+}  // namespace applique::compare

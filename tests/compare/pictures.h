@@ -1,0 +1,28 @@
+#pragma once
+
+#include "applique/gpu/camera.h"
+#include "applique/gpu/device.h"
+#include "applique/image/image.h"
+
+#include "compare/comparison.h"
+
+/// What a method did to a case: the image on the surface, and the texture coordinates (Figs. 21 and 22 of the
+/// paper).
+namespace applique::compare {
+
+constexpr int picture_size = 420;  ///< Pixels, width and height.
+
+/// Looks at a map from above and a little from the right; the same camera serves all methods of a case.
+Camera camera_on_map(const Site& site, const DecalMap& map);
+
+/// A checkered image on the surface, a ring round each pin, and a ball on the surface where the pin is: where
+/// the map meets its pins each ball sits in its ring. Faces show the map linearly. Errors: device_failed.
+Result<Image> picture_of_model(const Device& device, const Site& site, const DecalInput& input,
+                               const DecalMap& map, const Camera& camera);
+
+/// The patch's faces in the image. Colours are the face's L2 stretch, normalised by the map's areas: white 1,
+/// vermilion 2 and more (the image is drawn out there), blue 1/2 and less; black is turned over. Each pin is
+/// a ring, from which a line leads to where the map has it.
+Image picture_of_coordinates(const Site& site, const DecalInput& input, const DecalMap& map);
+
+}  // namespace applique::compare
