@@ -40,10 +40,10 @@ struct Figures {
   double linf = 1;
   double angle = 1;
   double area = 1;
-  std::uint32_t flips = 0;  ///< Faces turned over in the image.
-  double residual_px = 0;   ///< The largest of the features.
-  double coverage = 0;      ///< Of the region's area.
-  double seconds = 0;       ///< The solve's.
+  std::uint32_t flips = 0;        ///< Faces turned over in the image.
+  double residual_px = 0;         ///< The largest of the features.
+  double coverage = 0;            ///< Of the region's area.
+  std::optional<double> seconds;  ///< The solve's; none of what another program did.
 };
 
 /// A method's result on a case.

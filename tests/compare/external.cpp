@@ -202,6 +202,7 @@ Result<Row> measure_external(const Comparison& comparison, const std::string& me
   auto map = external_map(site, *found->input, ours, patch);
   if (!map) return fail(map.error().code, fmt::format("{}: {}", file.string(), map.error().message));
   Row row = row_of(found->name, method, *map);
+  row.figures->seconds.reset();
   row.map = std::move(*map);
   return row;
 }

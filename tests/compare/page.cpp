@@ -53,7 +53,7 @@ class Gallery {
   /// The figures of a case, in HTML.
   Result<std::string> draw(const Case& shown) {
     std::string html;
-    camera_.reset();
+    view_.reset();
     for (const Row& row : comparison_.rows) {
       if (row.name != shown.name) continue;
       html += "<figure>";
@@ -71,8 +71,8 @@ class Gallery {
     const Site& site = comparison_.sites[shown.site];
     std::string html;
     if (device_ != nullptr) {
-      if (!camera_) camera_ = camera_on_map(site, *row.map);
-      APPLIQUE_TRY(const Image model, picture_of_model(*device_, site, *shown.input, *row.map, *camera_));
+      if (!view_) view_ = view_case(site, *shown.input, *row.map);
+      APPLIQUE_TRY(const Image model, picture_of_model(*device_, site, *shown.input, *row.map, *view_));
       APPLIQUE_TRY(const std::string image, add(row, "model", model));
       html += image;
     }
@@ -95,7 +95,7 @@ class Gallery {
   const std::filesystem::path& folder_;
   const Comparison& comparison_;
   const Device* device_;
-  std::optional<Camera> camera_;
+  std::optional<CaseView> view_;
 };
 
 Result<std::string> sections(const std::filesystem::path& folder, const Comparison& comparison,
@@ -141,7 +141,7 @@ Result<std::string> page(const std::filesystem::path& folder, const Comparison& 
 
 bool is_pictured(const CaseName& name) {
   constexpr int shown_pins = 5;
-  return name.region != "strip" && name.pins == shown_pins;
+  return name.region == "star" && name.pins == shown_pins;
 }
 
 Result<void> write_page(const std::filesystem::path& folder, const Comparison& comparison,

@@ -24,7 +24,7 @@ using draw::Rgba;
 
 constexpr Rgba plain = {0.80, 0.79, 0.77};
 constexpr int supersampling = 2;      // on top of the renderer's own
-constexpr int texture_scale = 4;      // texels a pixel of the image
+constexpr int texture_scale = 2;      // texels a pixel of the image
 constexpr double cell = 32;           // of the checker, pixels of the image
 constexpr double ring_radius = 13;    // pixels of the image
 constexpr double ball_share = 0.016;  // radius, share of the image's width on the surface
@@ -171,8 +171,7 @@ bool is_turned_over(const DecalMap& map, PatchFaceId q) {
   return orientation(map.image[v[0]], map.image[v[1]], map.image[v[2]]) <= 0;
 }
 
-}  // namespace
-
+/// From above and a little from the right.
 Camera camera_on_map(const Site& site, const DecalMap& map) {
   std::vector<Vec3> points;
   Vec3 normal = Vec3::Zero();
@@ -187,17 +186,22 @@ Camera camera_on_map(const Site& site, const DecalMap& map) {
   return frame_points(points, normal + 0.35 * up + 0.3 * up.cross(normal), up, 1);
 }
 
+}  // namespace
+
+CaseView view_case(const Site& site, const DecalInput& input, const DecalMap& map) {
+  return {camera_on_map(site, map), draw_texture(input)};
+}
+
 Result<Image> picture_of_model(const Device& device, const Site& site, const DecalInput& input,
-                               const DecalMap& map, const Camera& camera) {
-  const Image texture = draw_texture(input);
+                               const DecalMap& map, const CaseView& view) {
   const SurfaceDrawing drawing(site, input.region.frame());
-  std::vector<RenderMesh> meshes = {drawing.covered(map, texture), drawing.rest(map)};
+  std::vector<RenderMesh> meshes = {drawing.covered(map, view.texture), drawing.rest(map)};
   for (const Feature& feature : input.features)
     meshes.push_back(ball(position_of(site.mesh, feature.surface), ball_share * site.width));
   RenderOptions options;
   options.width = options.height = supersampling * picture_size;
   options.background_top = options.background_bottom = {1, 1, 1};
-  APPLIQUE_TRY(const Image large, render(device, meshes, camera, options));
+  APPLIQUE_TRY(const Image large, render(device, meshes, view.camera, options));
   draw::Canvas canvas(picture_size, picture_size);
   const double size = picture_size;
   canvas.fill({{0, 0}, {size, 0}, {size, size}, {0, size}}, [&](Vec2 p) {

@@ -12,13 +12,19 @@ namespace applique::compare {
 
 constexpr int picture_size = 420;  ///< Pixels, width and height.
 
-/// Looks at a map from above and a little from the right; the same camera serves all methods of a case.
-Camera camera_on_map(const Site& site, const DecalMap& map);
+/// What all methods' pictures of a case have in common.
+struct CaseView {
+  Camera camera;
+  Image texture;  ///< A checkered image, cut out by the region, with a ring round each pin.
+};
 
-/// A checkered image on the surface, a ring round each pin, and a ball on the surface where the pin is: where
-/// the map meets its pins each ball sits in its ring. Faces show the map linearly. Errors: device_failed.
+/// Looks at the map from above and a little from the right.
+CaseView view_case(const Site& site, const DecalInput& input, const DecalMap& map);
+
+/// The image on the surface, and a ball on the surface where each pin is: where the map meets its pins, balls
+/// sit in their rings. Faces show the map linearly. Errors: device_failed.
 Result<Image> picture_of_model(const Device& device, const Site& site, const DecalInput& input,
-                               const DecalMap& map, const Camera& camera);
+                               const DecalMap& map, const CaseView& view);
 
 /// The patch's faces in the image. Colours are the face's L2 stretch, normalised by the map's areas: white 1,
 /// vermilion 2 and more (the image is drawn out there), blue 1/2 and less; black is turned over. Each pin is

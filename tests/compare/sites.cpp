@@ -56,7 +56,7 @@ SiteSource sphere(double reach) {
 
 /// So steep that a projection loses it; the middle of the image is at its foot.
 Site bump() {
-  return site_at("bump", shapes::bump(64, 2, 0.2).weld(), {0.28, 0.11, 0}, upwards, 1.3);
+  return site_at("bump", shapes::bump(64, 0.5, 0.12).weld(), {0.18, 0.07, 0}, upwards, 1.3);
 }
 
 const SurfaceMesh& bust_mesh() {
@@ -126,7 +126,10 @@ std::vector<SiteSource> own_sites() {
       sphere(1.3),
       sphere(2.0),
       sphere(2.6),
-      {"bump", "8192 faces: a bump 2 high and 0.2 wide, the image 1.3 wide, its middle at the foot", bump},
+      {"bump",
+       "8192 faces: a bump 0.5 high and 0.12 wide (as a Gaussian), the image 1.3 wide, its middle at the "
+       "foot",
+       bump},
       {"bust-nose", "the demo's bust, the image about the tip of the nose, half a head wide", nose},
       {"bust-ear", "the demo's bust, the image about the ear and twice as large", ear},
   };

@@ -12,6 +12,11 @@ std::string of_solved(const MethodSummary& summary, const std::string& text) {
   return summary.solved > 0 ? text : "-";
 }
 
+/// Nothing for what another program did.
+std::string seconds_of(const Figures& figures) {
+  return figures.seconds ? fmt::format("{:.3f}", *figures.seconds) : "";
+}
+
 std::vector<std::string> rounded(const Row& row) {
   std::vector<std::string> cells = {row.name.region, std::to_string(row.name.pins), row.method};
   if (row.figures) {
@@ -19,7 +24,7 @@ std::vector<std::string> rounded(const Row& row) {
     cells.insert(cells.end(), {fmt::format("{:.4f}", f.l2), fmt::format("{:.3g}", f.linf),
                                fmt::format("{:.4f}", f.angle), fmt::format("{:.4f}", f.area),
                                std::to_string(f.flips), fmt::format("{:.2g}", f.residual_px),
-                               fmt::format("{:.1f} %", 100 * f.coverage), fmt::format("{:.3f}", f.seconds)});
+                               fmt::format("{:.1f} %", 100 * f.coverage), seconds_of(f)});
   } else {
     cells.insert(cells.end(), 8, "");
   }
@@ -53,8 +58,8 @@ TextTable full_table(const std::vector<Row>& rows) {
       const Figures& f = *row.figures;
       for (const double value : {f.l2, f.linf, f.angle, f.area}) cells.push_back(fmt::format("{}", value));
       cells.push_back(std::to_string(f.flips));
-      for (const double value : {f.residual_px, f.coverage, f.seconds})
-        cells.push_back(fmt::format("{}", value));
+      for (const double value : {f.residual_px, f.coverage}) cells.push_back(fmt::format("{}", value));
+      cells.push_back(seconds_of(f));
     } else {
       cells.insert(cells.end(), 8, "");
     }

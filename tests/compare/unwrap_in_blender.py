@@ -8,6 +8,11 @@ Nothing else changes: positions, triangles and the node's name stay, which tell 
 import sys
 
 import bpy
+import numpy
+
+# The glTF add-on of Blender 3.4 uses a name that NumPy 1.24 has dropped; Debian 12 has the two together.
+if "bool" not in vars(numpy):
+    numpy.bool = bool
 
 
 def unwrap(method):
