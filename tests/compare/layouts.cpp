@@ -22,22 +22,23 @@ Pixel around(double radius, double degrees) {
   return {p.real(), p.imag()};
 }
 
+/// No three pins lie on a line, as none do that are put by hand.
 Layout disc() {
   constexpr double inner = 150, outer = 190;
   return {"disc",
           region_of(draw::circle(middle, disc_radius)),
-          {around(0, 0), around(inner, 0), around(inner, 180), around(inner, 90), around(inner, 270),
-           around(outer, 45), around(outer, 135), around(outer, 225), around(outer, 315)}};
+          {around(0, 0), around(inner, 8), around(inner, 173), around(inner, 97), around(inner, 262),
+           around(outer, 48), around(outer, 131), around(outer, 222), around(outer, 317)}};
 }
 
-/// Pins near four tips, then near the fifth and between them.
+/// Pins near the tips, then between them; no three on a line.
 Layout star() {
   constexpr double outer = 250, inner = 115, tip = 180, notch = 85;
   constexpr double upright = -std::numbers::pi / 2;
   return {"star",
           region_of(draw::star(middle, outer, inner, 5, upright)),
           {around(0, 0), around(tip, 90), around(tip, 18), around(tip, 162), around(tip, 234),
-           around(tip, 306), around(notch, 270), around(notch, 54), around(notch, 126)}};
+           around(tip, 306), around(notch, 262), around(notch, 60), around(notch, 120)}};
 }
 
 Layout strip() {

@@ -88,19 +88,20 @@ struct ModelPlace {
   double share;  ///< The image's width, share of the diagonal.
 };
 
+/// Where a model is far from flat.
 const std::array<ModelPlace, 12> model_places = {{
     {"head-scan", "gltf/LeePerrySmith/LeePerrySmith.glb", "nose", {-0.1289, 1.0629, 9}, {0, 0, -1}, 0.2},
-    {"nefertiti", "derived/gltf/nefertiti-lowres.glb", "face", {0, -60, 400}, {0, 0, -1}, 0.18},
+    {"nefertiti", "derived/gltf/nefertiti-lowres.glb", "nose", {0, -28, 400}, {0, 0, -1}, 0.2},
     {"face-mask", "derived/gltf/bff_face.glb", "nose", {0, 0.2386, 1}, {0, 0, -1}, 0.25},
     {"canonical-face", "derived/gltf/canonical_face_model.glb", "nose", {0, -1.13, 20}, {0, 0, -1}, 0.25},
-    {"body", "derived/gltf/human_neutral.glb", "chest", {0, 1.27, 2}, {0, 0, -1}, 0.12},
-    {"hand", "derived/gltf/hand_closed.glb", "palm", {-0.04, 0.36, 2}, {0, 0, -1}, 0.2},
-    {"cow", "derived/gltf/spot.glb", "flank", {2, 0.1, 0.1}, {-1, 0, 0}, 0.25},
-    {"penguin", "derived/gltf/penguin.glb", "belly", {0, 0, 5}, {0, 0, -1}, 0.25},
-    {"monkey", "gltf/Suzanne/Suzanne.gltf", "forehead", {0, 0.6, 3}, {0, 0, -1}, 0.2},
-    {"duck", "gltf/Duck.glb", "wing", {-0.1, 0.5, 3}, {0, 0, -1}, 0.22},
-    {"wing-nut", "derived/gltf/wingnut.glb", "base", {9, 0.2, 0}, {-1, 0, 0}, 0.2},
-    {"torus", "derived/gltf/torus.glb", "outer rim", {3, 0.02, 0.01}, {-1, 0, 0}, 0.2},
+    {"body", "derived/gltf/human_neutral.glb", "armpit", {0.17, 1.3, 2}, {0, 0, -1}, 0.15},
+    {"hand", "derived/gltf/hand_closed.glb", "between thumb and palm", {-0.17, 0.38, 2}, {0, 0, -1}, 0.25},
+    {"cow", "derived/gltf/spot.glb", "cheek", {2, 0.45, -0.3}, {-1, 0, 0}, 0.25},
+    {"penguin", "derived/gltf/penguin.glb", "beak", {-0.1, 0.9, 5}, {0, 0, -1}, 0.25},
+    {"monkey", "gltf/Suzanne/Suzanne.gltf", "nose", {0.005, -0.2, 3}, {0, 0, -1}, 0.2},
+    {"duck", "gltf/Duck.glb", "cheek and bill", {0.6, 1.2, 3}, {0, 0, -1}, 0.25},
+    {"wing-nut", "derived/gltf/wingnut.glb", "crease of a wing", {9, 0.2, 1.2}, {-1, 0, 0}, 0.25},
+    {"torus", "derived/gltf/torus.glb", "outer rim", {3, 0.02, 0.01}, {-1, 0, 0}, 0.25},
 }};
 
 Result<Site> make_model_site(const ModelPlace& place, const std::filesystem::path& file) {

@@ -80,30 +80,21 @@ TextTable site_table(const std::vector<Row>& rows, const std::string& site) {
 
 std::vector<std::string> explanations() {
   return {
-      "Each row is one method on one surface, region and number of features; all are measured by the same "
-      "code "
-      "(engine/applique/quality/map_quality.h). L2 and Linf are the stretch of Sander et al. 2001, "
-      "normalised so "
-      "that an isometry up to scale has 1; angle and area are the area means of s1/s2 and of max(s1 s2, "
-      "1/(s1 s2)); flips are faces turned over in the image, which the means leave out; the residual is the "
-      "largest distance of a feature from its pixel in an image of 512 x 512; coverage is the share of the "
-      "region "
-      "that lands on the surface. Seconds are the solve's, taken while both cores are busy: they are "
-      "printed, "
-      "not judged.",
-      "Features lie where someone would put them who wants the picture undistorted: at the surface points "
-      "where "
-      "the default method has their image points when it is given the first one alone, with the size and "
-      "direction of the surface's line below. That is the default's own choice of places: no other method is "
-      "asked for its own. The first feature is in the middle of the region, and every method meets it; "
-      "methods "
-      "that meet only one are turned and scaled about it to come nearest to the others.",
-      "The summary is over the rows with two or more features. \"Least L2\" counts the rows in which no "
-      "method "
-      "that solves them has less, to 0.01 %, so that ties count for each. A map is \"whole\" when it turns "
-      "nothing over and covers the region as far as the best map does, to 1 %; the others leave out the "
-      "faces "
-      "that cost the most, so that L2 flatters them. All ratios are within a row of this run.",
+      R"(Each row is one method on one surface, region and number of features; all are measured by the same code
+(engine/applique/quality/map_quality.h). L2 and Linf are the stretch of Sander et al. 2001, normalised so that an
+isometry up to scale has 1; angle and area are the area means of s1/s2 and of max(s1 s2, 1/(s1 s2)); flips are
+faces turned over in the image, which the means leave out; the residual is the largest distance of a feature from
+its pixel in an image of 512 x 512; coverage is the share of the region that lands on the surface. Seconds are the
+solve's, taken while every core is busy: they are printed, not judged.)",
+      R"(Features lie where someone would put them who wants the picture undistorted: at the surface points where the
+default method (isometric) has their image points when it is given the first one alone, with the size named below
+each surface. That is the default's own choice of places; no other method is asked for its own. The first feature is
+in the middle of the region; methods that meet only that one are turned and scaled about it to come nearest to the
+others. The paper's method pins vertices, so that its residual is up to the length of an edge.)",
+      R"(The summary is over the rows with two or more features. "Least L2" counts the rows in which no method that
+solves them has less, to 0.01 %, so that ties count for each. A map is "whole" when it turns nothing over and covers
+the region as far as the best map does, to 1 %; the others leave out the faces that cost the most, so that L2
+flatters them. All ratios are within a row of this run.)",
   };
 }
 
