@@ -84,7 +84,7 @@ void expect_same(const Figures& a, const Figures& b) {
 
 TEST(Compare, EveryCaseHasARowOfEveryMethod) {
   Comparison comparison = cases("plane/");
-  const auto methods = all_methods();
+  const auto methods = contenders();
   solve_cases(comparison, methods, [](const CaseName&) { return false; });
   ASSERT_EQ(comparison.cases.size(), comparison.layouts.size() * pin_counts.size());
   ASSERT_EQ(comparison.rows.size(), comparison.cases.size() * methods.size());
@@ -249,7 +249,7 @@ TEST(TextTable, QuotesWhatItsFormsReserve) {
 
 TEST(Page, BeginsWithTheSummaryAndShowsItsPictures) {
   Comparison comparison = cases("sphere-1.0/star/5");
-  solve_cases(comparison, all_methods(), is_pictured);
+  solve_cases(comparison, contenders(), is_pictured);
   const Folder folder;
   ASSERT_TRUE(write_page(folder / "page", comparison, own_sites(), nullptr));
   const std::string markdown = folder.read("page/table.md"), html = folder.read("page/index.html");

@@ -72,7 +72,7 @@ Result<void> add_externals(const Arguments& arguments, Comparison& comparison) {
 }
 
 Result<void> compare_methods(const Arguments& arguments, const std::vector<SiteSource>& sources) {
-  const std::vector<Contender> methods = all_methods();
+  const std::vector<Contender> methods = contenders();
   Comparison comparison = make_cases(sources, arguments.only);
   if (sources.size() == own_sites().size())
     comparison.notes.emplace_back(

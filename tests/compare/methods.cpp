@@ -2,7 +2,7 @@
 
 namespace applique::compare {
 
-std::vector<Contender> all_methods() {
+std::vector<Contender> contenders() {
   return {
       {"isometric", {.method = Method::applique, .energy = Energy::isometric}},
       {"conformal", {.method = Method::applique, .energy = Energy::conformal}},

@@ -14,6 +14,6 @@ struct Contender {
 };
 
 /// Every method of the program, the default first.
-std::vector<Contender> all_methods();
+std::vector<Contender> contenders();
 
 }  // namespace applique::compare
