@@ -44,63 +44,77 @@ std::string caption_of(const Row& row) {
                      escape_html(row.method), f.l2, f.flips, f.residual_px, 100 * f.coverage);
 }
 
-/// Draws the rows of cases as they come; all of a case are seen from where its first map is seen best.
-class Gallery {
- public:
-  Gallery(const std::filesystem::path& folder, const Comparison& comparison, const Device* device)
-      : folder_(folder), comparison_(comparison), device_(device) {}
+/// A name as a file's.
+std::string file_name(const std::string& name) {
+  std::string file = name + ".png";
+  std::replace_if(
+      file.begin(), file.end(), [](char c) { return c == ' ' || c == '/'; }, '-');
+  return file;
+}
 
-  /// The figures of a case, in HTML.
-  Result<std::string> draw(const Case& shown) {
-    std::string html;
-    view_.reset();
-    for (const Row& row : comparison_.rows) {
-      if (row.name != shown.name) continue;
-      html += "<figure>";
-      if (row.map) {
-        APPLIQUE_TRY(const std::string images, draw_map(shown, row));
-        html += images;
-      }
-      html += fmt::format("<figcaption>{}</figcaption></figure>\n", caption_of(row));
+/// Draws the maps of a case: for each method its picture, and all of them side by side on a sheet. All are
+/// seen from where the first is seen best.
+class CasePictures {
+ public:
+  CasePictures(const std::filesystem::path& folder, const Site& site, const Case& shown, const Device* device)
+      : folder_(folder), site_(site), shown_(shown), device_(device) {}
+
+  /// The method's figure, in HTML.
+  Result<std::string> add(const Row& row) {
+    std::string image;
+    if (row.map) {
+      APPLIQUE_TRY(Image picture, draw(*row.map));
+      const std::string file = file_name(row.name.text() + "-" + row.method);
+      APPLIQUE_CHECK(write_picture(folder_ / "pictures" / file, picture));
+      columns_.push_back(std::move(picture));
+      image = fmt::format("<img src=\"pictures/{}\" alt=\"{} by {}\">", escape_html(file),
+                          escape_html(row.name.text()), escape_html(row.method));
     }
-    return html;
+    return fmt::format("<figure>{}<figcaption>{}</figcaption></figure>\n", image, caption_of(row));
+  }
+
+  Result<void> write_sheet() const {
+    if (columns_.empty()) return {};
+    return write_picture(folder_ / file_name(shown_.name.text()), join(columns_));
   }
 
  private:
-  Result<std::string> draw_map(const Case& shown, const Row& row) {
-    const Site& site = comparison_.sites[shown.site];
-    std::string html;
+  /// The surface above the texture coordinates.
+  Result<Image> draw(const DecalMap& map) {
+    std::vector<Image> pictures;
     if (device_ != nullptr) {
-      if (!view_) view_ = view_case(site, *shown.input, *row.map);
-      APPLIQUE_TRY(const Image model, picture_of_model(*device_, site, *shown.input, *row.map, *view_));
-      APPLIQUE_TRY(const std::string image, add(row, "model", model));
-      html += image;
+      if (!view_) view_ = view_case(site_, *shown_.input, map);
+      APPLIQUE_TRY(pictures.emplace_back(), picture_of_model(*device_, site_, *shown_.input, map, *view_));
     }
-    APPLIQUE_TRY(const std::string image,
-                 add(row, "coordinates", picture_of_coordinates(site, *shown.input, *row.map)));
-    return html + image;
-  }
-
-  /// Writes the picture, and shows it.
-  Result<std::string> add(const Row& row, const char* what, const Image& image) {
-    std::string file =
-        fmt::format("{}-{}-{}-{}-{}.png", row.name.site, row.name.region, row.name.pins, row.method, what);
-    std::replace_if(
-        file.begin(), file.end(), [](char c) { return c == ' ' || c == '/'; }, '-');
-    APPLIQUE_CHECK(write_picture(folder_ / "pictures" / file, image));
-    return fmt::format("<img src=\"pictures/{0}\" alt=\"{1} of {2} by {3}\">", escape_html(file), what,
-                       escape_html(row.name.text()), escape_html(row.method));
+    pictures.push_back(picture_of_coordinates(site_, *shown_.input, map));
+    return stack(pictures);
   }
 
   const std::filesystem::path& folder_;
-  const Comparison& comparison_;
+  const Site& site_;
+  const Case& shown_;
   const Device* device_;
   std::optional<CaseView> view_;
+  std::vector<Image> columns_;
 };
+
+/// The pictures of a case and their captions, in HTML.
+Result<std::string> figures_of(const Case& shown, const std::filesystem::path& folder,
+                               const Comparison& comparison, const Device* device) {
+  CasePictures pictures(folder, comparison.sites[shown.site], shown, device);
+  std::string html =
+      fmt::format("<p>{}, {} features:</p>\n<div class=\"methods\">\n", shown.name.region, shown.name.pins);
+  for (const Row& row : comparison.rows) {
+    if (row.name != shown.name) continue;
+    APPLIQUE_TRY(const std::string figure, pictures.add(row));
+    html += figure;
+  }
+  APPLIQUE_CHECK(pictures.write_sheet());
+  return html + "</div>\n";
+}
 
 Result<std::string> sections(const std::filesystem::path& folder, const Comparison& comparison,
                              const std::vector<SiteSource>& sources, const Device* device) {
-  Gallery gallery(folder, comparison, device);
   std::string html;
   for (const SiteSource& source : sources) {
     const TextTable table = site_table(comparison.rows, source.name);
@@ -108,9 +122,8 @@ Result<std::string> sections(const std::filesystem::path& folder, const Comparis
     html += fmt::format("<h2>{}</h2>\n<p>{}.</p>\n", escape_html(source.name), escape_html(source.about));
     for (const Case& shown : comparison.cases) {
       if (shown.name.site != source.name || !is_pictured(shown.name) || !shown.input) continue;
-      APPLIQUE_TRY(const std::string figures, gallery.draw(shown));
-      html += fmt::format("<p>{}, {} features:</p>\n<div class=\"methods\">\n{}</div>\n", shown.name.region,
-                          shown.name.pins, figures);
+      APPLIQUE_TRY(const std::string figures, figures_of(shown, folder, comparison, device));
+      html += figures;
     }
     html += "<details><summary>All figures</summary>\n" + to_html(table) + "</details>\n";
   }

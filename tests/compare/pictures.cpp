@@ -166,6 +166,23 @@ Rgba colour_of_stretch(double stretch) {
   return draw::mix(palette::white, octaves > 0 ? palette::vermilion : palette::blue, std::abs(octaves));
 }
 
+/// Puts `picture` into `sheet` with its corner at x, y.
+void paste(const Image& picture, int x, int y, Image& sheet) {
+  for (int row = 0; row < picture.height; ++row)
+    std::copy_n(picture.pixel(0, row), 4 * picture.width, sheet.pixel(x, y + row));
+}
+
+Image tile(const std::vector<Image>& pictures, int columns, int rows) {
+  const int width = pictures.front().width, height = pictures.front().height;
+  constexpr std::uint16_t full = 65535;
+  Image sheet = make_image(columns * width, rows * height, {full, full, full, full});
+  for (std::size_t i = 0; i < pictures.size(); ++i) {
+    const int k = static_cast<int>(i);
+    paste(pictures[i], k % columns * width, k / columns * height, sheet);
+  }
+  return sheet;
+}
+
 bool is_turned_over(const DecalMap& map, PatchFaceId q) {
   const auto& v = map.patch.faces[q].vertices;
   return orientation(map.image[v[0]], map.image[v[1]], map.image[v[2]]) <= 0;
@@ -236,6 +253,14 @@ Image picture_of_coordinates(const Site& site, const DecalInput& input, const De
     canvas.fill(draw::circle(view(*reached), 4), draw::solid(palette::orange));
   }
   return canvas.image();
+}
+
+Image stack(const std::vector<Image>& pictures) {
+  return tile(pictures, 1, static_cast<int>(pictures.size()));
+}
+
+Image join(const std::vector<Image>& pictures) {
+  return tile(pictures, static_cast<int>(pictures.size()), 1);
 }
 
 }  // namespace applique::compare

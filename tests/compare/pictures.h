@@ -1,5 +1,7 @@
 #pragma once
 
+#include <vector>
+
 #include "applique/gpu/camera.h"
 #include "applique/gpu/device.h"
 #include "applique/image/image.h"
@@ -30,5 +32,9 @@ Result<Image> picture_of_model(const Device& device, const Site& site, const Dec
 /// vermilion 2 and more (the image is drawn out there), blue 1/2 and less; black is turned over. Each pin is
 /// a ring, from which a line leads to where the map has it.
 Image picture_of_coordinates(const Site& site, const DecalInput& input, const DecalMap& map);
+
+/// Pictures of one size from above to below, or from left to right.
+Image stack(const std::vector<Image>& pictures);
+Image join(const std::vector<Image>& pictures);
 
 }  // namespace applique::compare
