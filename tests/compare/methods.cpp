@@ -1,12 +1,23 @@
 #include "compare/methods.h"
 
 namespace applique::compare {
+namespace {
+
+/// The default options with what `choose` changes of them.
+template <class Choose>
+Contender contender(const char* name, const Choose& choose) {
+  Contender made{name, {}};
+  choose(made.options);
+  return made;
+}
+
+}  // namespace
 
 std::vector<Contender> contenders() {
   return {
-      {"isometric", {.method = Method::applique, .energy = Energy::isometric}},
-      {"conformal", {.method = Method::applique, .energy = Energy::conformal}},
-      {"paper", {.method = Method::paper, .energy = Energy::conformal}},
+      contender("isometric", [](SolveOptions& o) { o.energy = Energy::isometric; }),
+      contender("conformal", [](SolveOptions& o) { o.energy = Energy::conformal; }),
+      contender("paper", [](SolveOptions& o) { o.method = Method::paper; }),
   };
 }
 
