@@ -238,20 +238,21 @@ TEST(Summary, ComparesTheMethodsThatSolveWithinEachCase) {
   ASSERT_EQ(summaries.size(), 2U);
   const MethodSummary &a = summaries[0], &b = summaries[1];
   EXPECT_EQ(a.method, "a");
-  EXPECT_EQ(a.rows, 4);
-  EXPECT_EQ(a.solved, 4);
+  EXPECT_EQ(a.rows, 6);
+  EXPECT_EQ(a.solved, 6);
   EXPECT_EQ(a.least_l2, 2);  // alone in c, tied in d
-  EXPECT_EQ(a.whole, 4);
-  EXPECT_EQ(a.least_l2_whole, 4);
+  EXPECT_EQ(a.whole, 6);
+  EXPECT_EQ(a.least_l2_whole, 6);
   EXPECT_DOUBLE_EQ(a.worst_ratio, 1.2);
+  EXPECT_DOUBLE_EQ(a.median_ratio, 1.1);
   EXPECT_DOUBLE_EQ(a.least_coverage, 0.9);
-  EXPECT_EQ(b.rows, 4);
-  EXPECT_EQ(b.solved, 3);
-  EXPECT_EQ(b.least_l2, 3);
-  EXPECT_EQ(b.whole, 1);  // turned over in a, half the region in b
+  EXPECT_EQ(b.rows, 6);
+  EXPECT_EQ(b.solved, 5);
+  EXPECT_EQ(b.least_l2, 5);
+  EXPECT_EQ(b.whole, 1);  // in d alone
   EXPECT_EQ(b.least_l2_whole, 1);
   EXPECT_NEAR(b.worst_ratio, 1, 1e-4);
-  EXPECT_EQ(b.flips, 7U);
+  EXPECT_EQ(b.flips, 8U);
   EXPECT_DOUBLE_EQ(b.worst_residual_px, 30);
 }
 

@@ -7,18 +7,19 @@
 namespace applique::compare {
 namespace {
 
-constexpr double tie = 1.0001;              // of two L2 stretches
-constexpr double coverage_of_whole = 0.99;  // of the best coverage
+constexpr double tie = 1.0001;            // of two L2 stretches
+constexpr double whole_tolerance = 0.01;  // of the region's area; more than all of it is shown twice
 
 /// What the methods that solve a case are measured by.
 struct Best {
   double l2 = std::numeric_limits<double>::infinity();
   double l2_whole = std::numeric_limits<double>::infinity();
-  double coverage = 0;
+  double coverage = 0;  ///< Of maps without turned faces, at most 1.
 };
 
 bool is_whole(const Figures& figures, const Best& best) {
-  return figures.flips == 0 && figures.coverage >= coverage_of_whole * best.coverage;
+  return figures.flips == 0 && figures.coverage > best.coverage - whole_tolerance &&
+         figures.coverage < 1 + whole_tolerance;
 }
 
 std::map<CaseName, Best> best_by_case(const std::vector<const Row*>& rows) {
@@ -26,7 +27,7 @@ std::map<CaseName, Best> best_by_case(const std::vector<const Row*>& rows) {
   for (const Row* row : rows) {
     Best& b = best[row->name];
     b.l2 = std::min(b.l2, row->figures->l2);
-    b.coverage = std::max(b.coverage, row->figures->coverage);
+    if (row->figures->flips == 0) b.coverage = std::max(b.coverage, std::min(1.0, row->figures->coverage));
   }
   for (const Row* row : rows) {
     Best& b = best[row->name];
@@ -47,6 +48,13 @@ void add(MethodSummary& summary, const Figures& figures, const Best& best) {
   summary.least_coverage = std::min(summary.least_coverage, figures.coverage);
 }
 
+double median(std::vector<double> values) {
+  if (values.empty()) return 0;
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
 }  // namespace
 
 std::vector<MethodSummary> summarise(const std::vector<Row>& rows) {
@@ -56,6 +64,7 @@ std::vector<MethodSummary> summarise(const std::vector<Row>& rows) {
   const std::map<CaseName, Best> best = best_by_case(solved);
 
   std::vector<MethodSummary> summaries;
+  std::map<std::string, std::vector<double>> ratios;
   for (const Row& row : rows) {
     if (row.name.pins < 2) continue;
     auto summary = std::find_if(summaries.begin(), summaries.end(),
@@ -65,8 +74,11 @@ std::vector<MethodSummary> summarise(const std::vector<Row>& rows) {
       summary = std::prev(summaries.end());
     }
     ++summary->rows;
-    if (row.solved()) add(*summary, *row.figures, best.at(row.name));
+    if (!row.solved()) continue;
+    add(*summary, *row.figures, best.at(row.name));
+    ratios[row.method].push_back(row.figures->l2 / best.at(row.name).l2);
   }
+  for (MethodSummary& summary : summaries) summary.median_ratio = median(ratios[summary.method]);
   return summaries;
 }
 

@@ -35,13 +35,14 @@ std::vector<std::string> rounded(const Row& row) {
 }  // namespace
 
 TextTable summary_table(const std::vector<Row>& rows) {
-  TextTable table{{"method", "solved", "least L2", "whole", "least L2 of whole", "worst L2 / least", "flips",
-                   "worst residual (px)", "least coverage"},
+  TextTable table{{"method", "solved", "least L2", "whole", "least L2 of whole", "median L2 / least", "worst",
+                   "flips", "worst residual (px)", "least coverage"},
                   {}};
   for (const MethodSummary& s : summarise(rows))
     table.rows.push_back({s.method, fmt::format("{} of {}", s.solved, s.rows), std::to_string(s.least_l2),
                           std::to_string(s.whole), std::to_string(s.least_l2_whole),
-                          of_solved(s, fmt::format("{:.3f}", s.worst_ratio)), std::to_string(s.flips),
+                          of_solved(s, fmt::format("{:.4f}", s.median_ratio)),
+                          of_solved(s, fmt::format("{:.4g}", s.worst_ratio)), std::to_string(s.flips),
                           of_solved(s, fmt::format("{:.2g}", s.worst_residual_px)),
                           of_solved(s, fmt::format("{:.1f} %", 100 * s.least_coverage))});
   return table;
@@ -92,8 +93,8 @@ each surface. That is the default's own choice of places; no other method is ask
 in the middle of the region; methods that meet only that one are turned and scaled about it to come nearest to the
 others. The paper's method pins vertices, so that its residual is up to the length of an edge.)",
       R"(The summary is over the rows with two or more features. "Least L2" counts the rows in which no method that
-solves them has less, to 0.01 %, so that ties count for each. A map is "whole" when it turns nothing over and covers
-the region as far as the best map does, to 1 %; the others leave out the faces that cost the most, so that L2
+solves them has less, to 0.01 %, so that ties count for each. A map is "whole" when it turns nothing over and shows
+the region once, to 1 % as far as the best such map; the others leave out the faces that cost the most, so that L2
 flatters them. All ratios are within a row of this run.)",
   };
 }
