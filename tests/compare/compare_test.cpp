@@ -234,7 +234,10 @@ TEST(Summary, ComparesTheMethodsThatSolveWithinEachCase) {
       summarise({row("a", 1, "a", 9), row("a", 1, "b", 1),  // one pin: not counted
                  row("a", 2, "a", 1.2), row("a", 2, "b", 1.0, 7, 1, 30), row("b", 5, "a", 1.1),
                  row("b", 5, "b", 1.0, 0, 0.5, 20), row("c", 5, "a", 2, 0, 0.9), unsolved,
-                 row("d", 9, "a", 1.5), row("d", 9, "b", 1.50001, 0, 0.995)});
+                 row("d", 9, "a", 1.5), row("d", 9, "b", 1.50001, 0, 0.995), row("e", 5, "a", 1.1),
+                 row("e", 5, "b", 1.0, 1, 13),                          // folded over itself
+                 row("f", 5, "a", 1.1), row("f", 5, "b", 1.0, 0, 1.5)}  // shown twice
+      );
   ASSERT_EQ(summaries.size(), 2U);
   const MethodSummary &a = summaries[0], &b = summaries[1];
   EXPECT_EQ(a.method, "a");

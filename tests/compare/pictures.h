@@ -12,7 +12,7 @@
 /// paper).
 namespace applique::compare {
 
-constexpr int picture_size = 420;  ///< Pixels, width and height.
+constexpr int picture_size = 300;  ///< Pixels, width and height.
 
 /// What all methods' pictures of a case have in common.
 struct CaseView {
