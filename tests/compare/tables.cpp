@@ -91,7 +91,9 @@ solve's, taken while every core is busy: they are printed, not judged.)",
 default method (isometric) has their image points when it is given the first one alone, with the size named below
 each surface. That is the default's own choice of places; no other method is asked for its own. The first feature is
 in the middle of the region; methods that meet only that one are turned and scaled about it to come nearest to the
-others. The paper's method pins vertices, so that its residual is up to the length of an edge.)",
+others. The paper's method pins vertices, so that its residual is up to the length of an edge.
+Other programs' rows are on the patch of the default's solution: what their map would need beyond it is missing from
+their coverage.)",
       R"(The summary is over the rows with two or more features. "Least L2" counts the rows in which no method that
 solves them has less, to 0.01 %, so that ties count for each. A map is "whole" when it turns nothing over and shows
 the region once, to 1 % as far as the best such map; the others leave out the faces that cost the most, so that L2
