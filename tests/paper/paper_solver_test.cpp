@@ -120,6 +120,19 @@ TEST(PaperSolver, OnAnIrregularPlaneApproachesTheSimilarity) {
   }
 }
 
+TEST(PaperSolver, MayBeginWithAFeatureInsideAFaceOfTheOthers) {
+  const SurfaceMesh surface = shapes::plane(40, 40, 4, 4).weld();
+  const auto image_of = [&](const Vec3& p) { return Vec2(p.x() - 2, p.y() - 2); };
+  std::vector<Pin> pins;
+  for (const Vec3& p :
+       {Vec3(2, 2, 0), Vec3(2.6, 2.1, 0), Vec3(1.9, 2.6, 0), Vec3(1.4, 1.9, 0), Vec3(2.1, 1.4, 0)})
+    pins.push_back({frame.to_pixel(image_of(p)), p});
+  const auto map = solve_decal_as_paper(surface, decal(surface, rectangle(), pins));
+  ASSERT_TRUE(map.has_value()) << map.error().message;
+  EXPECT_EQ(map->status, Coverage::covered);
+  for (double residual : map->quality.feature_residual) EXPECT_LT(residual, 1e-8);
+}
+
 TEST(PaperSolver, CoversABumpWithTheFeaturesInPlace) {
   const SurfaceMesh surface = shapes::bump(48, 0.5, 0.35).weld();
   const DecalInput input = decal(surface, rectangle(),

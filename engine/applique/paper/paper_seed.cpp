@@ -24,13 +24,14 @@ class Builder {
         graph_(graph),
         paths_(paths),
         regions_(regions),
-        seed_{ImmersedDisc(surface, surface.mesh().vertex_face[features[0].vertex]),
+        start_(first_on_graph(graph)),
+        seed_{ImmersedDisc(surface, surface.mesh().vertex_face[features[start_].vertex]),
               std::vector<PatchVertexId>(features.size()),
               std::vector<std::vector<PatchFaceId>>(graph.faces.size())} {}
 
-  /// Breadth first from feature 0: the faces and the bridges at each feature that has been placed.
+  /// Breadth first from a feature: the faces and the bridges at each feature that has been placed.
   Result<PaperSeed> run() {
-    place(0, corner_over(PatchFaceId(0), features_[0].vertex));
+    place(start_, corner_over(PatchFaceId(0), features_[start_].vertex));
     for (std::size_t i = 0; i < queue_.size(); ++i) {
       const std::uint32_t k = queue_[i];
       seed_.features[k] = seed_.disc.complete_fan(at(k), one_sheet);
@@ -48,11 +49,18 @@ class Builder {
             ErrorCode::not_solved,
             fmt::format("decal '{}': the faces and paths of the graph do not reach {} on the surface: {}",
                         input_.name, feature_name(input_, k),
-                        ask_for_feature(input_, 0.5 * (features_[0].target + features_[k].target))));
+                        ask_for_feature(input_, 0.5 * (features_[start_].target + features_[k].target))));
     return compacted();
   }
 
  private:
+  /// An isolated feature leads nowhere; its face leads to it.
+  [[nodiscard]] static std::uint32_t first_on_graph(const ConvexGraph& graph) {
+    std::uint32_t k = 0;
+    const auto is_isolated = [&](const ConvexGraph::Isolated& isolated) { return isolated.feature == k; };
+    while (std::any_of(graph.isolated.begin(), graph.isolated.end(), is_isolated)) ++k;
+    return k;
+  }
   [[nodiscard]] static bool contains(const std::vector<std::uint32_t>& face, std::uint32_t k) {
     return std::find(face.begin(), face.end(), k) != face.end();
   }
@@ -163,6 +171,7 @@ class Builder {
   const ConvexGraph& graph_;
   const GraphPaths& paths_;
   const std::vector<std::vector<FaceId>>& regions_;
+  std::uint32_t start_;
   PaperSeed seed_;
   std::vector<std::uint32_t> queue_;  // features placed, in order
 };
