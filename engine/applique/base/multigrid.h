@@ -13,8 +13,8 @@ namespace applique {
 /// the next, coarser level. Time and memory grow with the number of unknowns.
 ///
 /// Each cycle sweeps a level forwards before and backwards after it visits the next (Gauss-Seidel). Ranges of
-/// rows are swept side by side; what couples them stabilises the diagonal (l1-Gauss-Seidel, Baker et al. 2011),
-/// which makes any such sweep converge, negative weights or not, without an estimate of eigenvalues.
+/// rows are swept side by side; what couples them stabilises the diagonal (l1-Gauss-Seidel, Baker et al.
+/// 2011), which makes any such sweep converge, negative weights or not, without an estimate of eigenvalues.
 class Multigrid {
  public:
   /// `matrix` is symmetric and positive definite.
