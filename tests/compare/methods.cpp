@@ -21,7 +21,6 @@ std::vector<Contender> contenders() {
   return {
       contender("isometric", [](SolveOptions& o) { o.energy = Energy::isometric; }),
       contender("conformal", [](SolveOptions& o) { o.energy = Energy::conformal; }),
-      contender("paper", [](SolveOptions& o) { o.method = Method::paper; }),
       contender(
           "planar",
           [](SolveOptions& o) { o.method = Method::planar, o.planar.normal_limit = steepest_projected; }),
@@ -30,6 +29,7 @@ std::vector<Contender> contenders() {
       contender("expmap upwind",
                 [](SolveOptions& o) { o.method = Method::expmap, o.parents = Parents::upwind; }),
       contender("stroke", [](SolveOptions& o) { o.method = Method::stroke; }),
+      contender("paper", [](SolveOptions& o) { o.method = Method::paper; }),
   };
 }
 
