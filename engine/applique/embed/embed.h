@@ -20,7 +20,7 @@ inline constexpr Energy Energy::conformal{0};
 /// Which step of the ladder the embedding came from.
 enum class EmbeddingRung {
   conformal,  ///< Boundary-first flattening as asked for.
-  isometric,  ///< Down the symmetric Dirichlet energy as asked for, which no fold can pass.
+  isometric,  ///< Down the energy as asked for, which no fold can pass.
   circle,     ///< The conformal map folded; the flip-free map on a circle took its place.
   arap,       ///< Rounding folded even that one: as rigid as possible all the same.
 };
