@@ -7,8 +7,8 @@
 
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(push_constant) uniform Constants { TransferConstants constants; };
-layout(std430, set = 0, binding = 0) buffer Owners { uint owners[]; };
-layout(std430, set = 0, binding = 2) readonly buffer Jobs { RasterJob jobs[]; };
+layout(std430, set = 0, binding = 0) buffer Region { uint region[]; };  // Owners, then nearest texels.
+layout(std430, set = 0, binding = 1) readonly buffer Jobs { RasterJob jobs[]; };
 
 void main() {
   uint job = constants.first + gl_WorkGroupID.x;
@@ -21,8 +21,8 @@ void main() {
   uint index = uint(texel.y * constants.region_size.x + texel.x);
   uint key = jobs[job].key;
   if ((key & key_mask) == 0u) {
-    atomicOr(owners[index], key);
+    atomicOr(region[index], key);
   } else {
-    atomicMax(owners[index], key);
+    atomicMax(region[index], key);
   }
 }

@@ -6,9 +6,8 @@
 
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(push_constant) uniform Constants { TransferConstants constants; };
-layout(std430, set = 0, binding = 0) readonly buffer Owners { uint owners[]; };
-layout(std430, set = 0, binding = 1) writeonly buffer Nearest { uint nearest[]; };
-layout(std430, set = 0, binding = 2) readonly buffer Blocks { uint blocks[]; };
+layout(std430, set = 0, binding = 0) buffer Region { uint region[]; };  // Owners, then nearest texels.
+layout(std430, set = 0, binding = 1) readonly buffer Blocks { uint blocks[]; };
 
 void main() {
   uint block = blocks[constants.first + gl_WorkGroupID.x];
@@ -19,10 +18,10 @@ void main() {
   for (int i = 0; i <= 2 * constants.gutter; ++i) {
     int dx = (i & 1) == 0 ? i / 2 : -(i + 1) / 2;
     int x = texel.x + dx;
-    if (x >= 0 && x < constants.region_size.x && owners[row + x] != 0u) {
+    if (x >= 0 && x < constants.region_size.x && region[row + x] != 0u) {
       distance = dx;
       break;
     }
   }
-  nearest[row + texel.x] = uint(distance);
+  region[constants.region_size.x * constants.region_size.y + row + texel.x] = uint(distance);
 }

@@ -10,31 +10,47 @@ layout(constant_id = 0) const bool has_warp = false;
 layout(constant_id = 1) const uint groups = 1u;
 
 layout(push_constant) uniform Constants { TransferConstants constants; };
-layout(std430, set = 0, binding = 0) readonly buffer Owners { uint owners[]; };
-layout(std430, set = 0, binding = 1) readonly buffer Nearest { uint nearest[]; };
-layout(std430, set = 0, binding = 2) readonly buffer Blocks { uint blocks[]; };
-layout(std430, set = 0, binding = 3) readonly buffer Faces { FaceMap faces[]; };
-layout(std430, set = 0, binding = 4) buffer Texels { uvec2 texels[]; };       // RGBA, 16 bits each, of the work.
-layout(std430, set = 0, binding = 5) readonly buffer Decal { uvec2 decal[]; };  // Premultiplied, half floats.
-layout(std430, set = 0, binding = 6) buffer Outcome {
+// Four storage buffers are all that every device has for a shader.
+layout(std430, set = 0, binding = 0) readonly buffer Region { uint region[]; };  // Owners, then nearest texels.
+layout(std430, set = 0, binding = 1) readonly buffer Plan { uvec4 plan[]; };       // Blocks, faces, points, a large warp's table.
+layout(std430, set = 0, binding = 2) readonly buffer Decal { uvec2 decal[]; };     // Premultiplied, half floats.
+layout(std430, set = 0, binding = 3) buffer Work {
   uint covered;
   uint gutter;
   uint shared_texels;
   uint padding;
-  vec2 samples[];
+  uvec2 work_words[];  // RGBA of the work's texels, 16 bits each; their samples; the sums of the pieces so far.
 };
-layout(std430, set = 0, binding = 10) buffer Sums { vec4 sums[]; };  // Of the pieces so far, where there are several.
-layout(std430, set = 0, binding = 8) readonly buffer Points { vec2 points[]; };  // Of the faces' grids.
-// Pairs as (i, j), then by stage the features' (position, group), then by stage the pairs' (lambda, offset).
-#ifdef LARGE_WARP
-layout(std430, set = 0, binding = 9) readonly buffer LargeWarp { vec4 warp_table[]; };
-#endif
-layout(std140, set = 0, binding = 7) uniform Tables {
+layout(std140, set = 0, binding = 4) uniform Tables {
   uvec4 levels[max_levels];  // Offset in `decal`, width, height.
 #ifndef LARGE_WARP
-  vec4 warp_table[warp_table_capacity];
+  vec4 small_warp_table[warp_table_capacity];
 #endif
 };
+
+uint block_at(uint index) { return plan[index / 4u][index % 4u]; }
+
+FaceMap face_at(uint index) {
+  uint first = constants.plan_faces + 4u * index;
+  uvec4 a = plan[first], b = plan[first + 1u], c = plan[first + 2u], d = plan[first + 3u];
+  return FaceMap(ivec2(a.xy), ivec2(a.zw), uintBitsToFloat(b.xy), uintBitsToFloat(b.zw), uintBitsToFloat(c.xy),
+                 uintBitsToFloat(c.zw), uintBitsToFloat(d.x), d.y, d.z, d.w);
+}
+
+// Of the faces' grids.
+vec2 point_at(uint index) {
+  uvec4 pair = plan[constants.plan_points + index / 2u];
+  return uintBitsToFloat((index & 1u) == 0u ? pair.xy : pair.zw);
+}
+
+// Pairs as (i, j), then by stage the features' (position, group), then by stage the pairs' (lambda, offset).
+vec4 warp_table(uint index) {
+#ifdef LARGE_WARP
+  return uintBitsToFloat(plan[constants.plan_warp + index]);
+#else
+  return small_warp_table[index];
+#endif
+}
 
 vec2 complex_product(vec2 a, vec2 b) { return vec2(a.x * b.x - a.y * b.y, a.x * b.y + a.y * b.x); }
 
@@ -48,11 +64,11 @@ float influence_ramp(float influence) {
 
 // Squared distance to a feature, divided by its share: out of reach where it has none, but of a square that is finite.
 float remoteness(vec2 p, uint feature) {
-  vec2 d = p - warp_table[feature].xy;
+  vec2 d = p - warp_table(feature).xy;
   float squared = dot(d, d);
   if (groups > 1u) {
     const float out_of_reach = 1e18;
-    float share = shares[floatBitsToUint(warp_table[feature].z)];
+    float share = shares[floatBitsToUint(warp_table(feature).z)];
     return share > 0.0 ? min(squared / share, out_of_reach) : out_of_reach;
   }
   return squared;
@@ -74,12 +90,12 @@ vec2 velocity(vec2 p, uint stage) {
   vec4 sum = vec4(0.0);
   float total = 0.0;
   for (uint q = 0u; q < constants.pairs; ++q) {
-    uvec2 pair = floatBitsToUint(warp_table[q].xy);
+    uvec2 pair = floatBitsToUint(warp_table(q).xy);
     float si = remoteness(p, positions + pair.x), sj = remoteness(p, positions + pair.y);
     float weight = pair.x == nearest_feature   ? 1.0 / sj
                    : pair.y == nearest_feature ? 1.0 / si
                                                : nearest_squared / (si * sj);
-    sum += weight * warp_table[rates + q];
+    sum += weight * warp_table(rates + q);
     total += weight;
   }
   sum /= total;
@@ -107,12 +123,12 @@ vec2 in_grid(uint first, int cells, vec2 place) {
   int i = clamp(int(floor(place.x)), 0, cells - 1 - j);
   vec2 f = place - vec2(i, j);
   uint row = first + uint(j * (2 * cells + 3 - j) / 2 + i), next = row + uint(cells + 1 - j);
-  vec2 along = points[row + 1u], across = points[next];
+  vec2 along = point_at(row + 1u), across = point_at(next);
   if (f.x + f.y > 1.0 && i + j < cells - 1) {
-    vec2 corner = points[next + 1u];
+    vec2 corner = point_at(next + 1u);
     return corner + (1.0 - f.x) * (across - corner) + (1.0 - f.y) * (along - corner);
   }
-  vec2 corner = points[row];
+  vec2 corner = point_at(row);
   return corner + f.x * (along - corner) + f.y * (across - corner);
 }
 
@@ -165,22 +181,23 @@ vec4 composite(vec4 source, vec4 below) {
 }
 
 void main() {
-  uint block = blocks[constants.first + gl_WorkGroupID.x];
+  uint block = block_at(constants.first + gl_WorkGroupID.x);
   ivec2 texel = ivec2(gl_LocalInvocationID.xy + block_size * uvec2(block & 0xffffu, block >> 16));
   ivec2 work = texel - constants.work_origin;
   if (any(lessThan(work, ivec2(0))) || any(greaterThanEqual(work, constants.work_size))) return;
 
   bool last_piece = (constants.piece_flags & piece_goes_on) == 0u;
   ivec2 seed = texel;
-  uint owner = owners[texel.y * constants.region_size.x + texel.x];
+  uint owner = region[texel.y * constants.region_size.x + texel.x];
   if (owner == 0u) {
+    uint nearest = uint(constants.region_size.x * constants.region_size.y);  // In `region`.
     int best = constants.gutter * constants.gutter + 1;
     for (int i = 0; i <= 2 * constants.gutter; ++i) {
       int dy = (i & 1) == 0 ? i / 2 : -(i + 1) / 2;
       int y = texel.y + dy;
       if (dy * dy >= best) break;
       if (y < 0 || y >= constants.region_size.y) continue;
-      uint dx = nearest[y * constants.region_size.x + texel.x];
+      uint dx = region[nearest + y * constants.region_size.x + texel.x];
       if (dx == no_texel) continue;
       int squared = int(dx) * int(dx) + dy * dy;
       if (squared < best) {
@@ -188,7 +205,7 @@ void main() {
         seed = ivec2(texel.x + int(dx), y);
       }
     }
-    uint key = owners[seed.y * constants.region_size.x + seed.x] & key_mask;
+    uint key = region[seed.y * constants.region_size.x + seed.x] & key_mask;
     if (key == 0u) return;
     if (last_piece) atomicAdd(gutter, 1u);
     owner = key;
@@ -198,7 +215,7 @@ void main() {
     if (last_piece && (owner & foreign_bit) != 0u) atomicAdd(shared_texels, 1u);
   }
 
-  FaceMap face = faces[(owner & key_mask) - 1u];
+  FaceMap face = face_at((owner & key_mask) - 1u);
   vec2 d = vec2(((face.flags & face_clamped) != 0u ? seed : texel) - face.texel);
   vec2 place = face.value + face.dx * d.x + face.dy * d.y;
   if (has_warp && (face.flags & face_warped) != 0u) {
@@ -214,20 +231,24 @@ void main() {
   }
   if (face.flags >= face_cells) place = in_grid(face.first_point, int(face.flags / face_cells), place);
   int index = work.y * constants.work_size.x + work.x;
-  if (constants.keep_samples != 0u && seed == texel) samples[index] = vec2(face.pixel) + place;
+  if (constants.keep_samples != 0u && seed == texel)
+    work_words[constants.work_samples + index] = floatBitsToUint(vec2(face.pixel) + place);
 
   vec4 source = constants.opacity * sample_decal(face.pixel, place, face.axis, face.level, face.probes);
-  if ((constants.piece_flags & piece_follows) != 0u) source += sums[index];
+  uint sum = constants.work_sums + 2u * uint(index);
+  if ((constants.piece_flags & piece_follows) != 0u)
+    source += uintBitsToFloat(uvec4(work_words[sum], work_words[sum + 1u]));
   if (!last_piece) {
-    sums[index] = source;
+    work_words[sum] = floatBitsToUint(source.xy);
+    work_words[sum + 1u] = floatBitsToUint(source.zw);
     return;
   }
   if (source.a <= 0.0) return;
-  uvec2 stored = texels[index];
+  uvec2 stored = work_words[index];
   vec4 below = vec4(unpackUnorm2x16(stored.x), unpackUnorm2x16(stored.y));
   vec4 result = composite(source, vec4(to_linear(below.rgb), below.a));
   result.rgb = to_srgb(clamp(result.rgb, 0.0, 1.0));
   result.a = clamp(result.a, 0.0, 1.0);
   uvec4 value = uvec4(result * constants.max_value + 0.5) * uint(65535.0 / constants.max_value + 0.5);
-  texels[index] = uvec2(value.x | value.y << 16, value.z | value.w << 16);
+  work_words[index] = uvec2(value.x | value.y << 16, value.z | value.w << 16);
 }

@@ -81,12 +81,17 @@ struct TransferConstants {
   uint piece_first;  // The decal's texels that are bound: what they give is added to what earlier pieces gave.
   uint piece_size;
   uint piece_flags;
+  uint plan_faces;  // Where they begin in the plan, in uvec4s.
+  uint plan_points;
+  uint plan_warp;
+  uint work_samples;  // Where they begin in the work, in uvec2s.
+  uint work_sums;
 };
 
 #ifdef __cplusplus
 static_assert(sizeof(RasterJob) == 48 && offsetof(RasterJob, key) == 36);
 static_assert(sizeof(FaceMap) == 64 && offsetof(FaceMap, axis) == 40 && offsetof(FaceMap, level) == 48);
-static_assert(sizeof(TransferConstants) == 92 && offsetof(TransferConstants, half_size) == 64);
+static_assert(sizeof(TransferConstants) == 112 && offsetof(TransferConstants, half_size) == 64);
 }  // namespace applique::shader
 #endif
 #undef APPLIQUE_CONST

@@ -26,10 +26,11 @@ TEST(ShaderLayout, TransferShadersMatch) {
     EXPECT_EQ(reflection.push_size, sizeof(shader::TransferConstants));
     EXPECT_LE(reflection.push_size, 128U);  // What every device has.
   }
-  EXPECT_EQ(cover.bindings, (Bindings{0, 2}));
-  EXPECT_EQ(nearest.bindings, (Bindings{0, 1, 2}));
-  EXPECT_EQ(shade.bindings, (Bindings{0, 1, 2, 3, 4, 5, 6, 7, 8, 10}));
-  EXPECT_EQ(shade_large.bindings, (Bindings{0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10}));
+  // The last is a uniform buffer: of storage buffers every device has four for a shader, and some no more.
+  EXPECT_EQ(cover.bindings, (Bindings{0, 1}));
+  EXPECT_EQ(nearest.bindings, (Bindings{0, 1}));
+  EXPECT_EQ(shade.bindings, (Bindings{0, 1, 2, 3, 4}));
+  EXPECT_EQ(shade_large.bindings, (Bindings{0, 1, 2, 3, 4}));
 }
 
 TEST(ShaderLayout, RenderShadersMatch) {

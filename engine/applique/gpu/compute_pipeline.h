@@ -12,7 +12,7 @@ namespace applique {
 struct ComputePipelineInfo {
   std::string name;
   std::span<const std::uint32_t> spirv;
-  std::vector<std::uint32_t> storage;    ///< Bindings of storage buffers, in set 0.
+  std::vector<std::uint32_t> storage;    ///< Bindings of storage buffers, in set 0; every device has 4.
   std::vector<std::uint32_t> uniform;    ///< Bindings of uniform buffers, in set 0.
   std::uint32_t push_size = 0;           ///< Bytes.
   std::vector<std::uint32_t> constants;  ///< Specialisation constants 0, 1, …

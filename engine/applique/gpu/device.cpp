@@ -17,7 +17,6 @@ namespace applique {
 namespace {
 
 constexpr const char* validation_layer = "VK_LAYER_KHRONOS_validation";
-constexpr std::uint32_t needed_storage_buffers = 10;
 
 // Filled by the validation layers' callback, from any thread.
 struct MessageLog {
@@ -90,10 +89,6 @@ std::optional<std::uint32_t> find_queue_family(VkPhysicalDevice physical) {
 std::string reason_against(VkPhysicalDevice physical, const VkPhysicalDeviceProperties& properties) {
   if (properties.apiVersion < VK_API_VERSION_1_1) return "it has no Vulkan 1.1";
   if (!find_queue_family(physical)) return "it has no queue for both graphics and compute";
-  if (properties.limits.maxPerStageDescriptorStorageBuffers < needed_storage_buffers) {
-    return fmt::format("a shader of it may use {} storage buffers only, {} are needed",
-                       properties.limits.maxPerStageDescriptorStorageBuffers, needed_storage_buffers);
-  }
   return {};
 }
 

@@ -25,8 +25,37 @@ struct Tables {
 };
 static_assert(sizeof(Tables) <= 16384);
 
-struct OutcomeCounts {
+struct WorkCounts {
   std::uint32_t covered, gutter, shared, padding;
+};
+
+// The buffer of what a tile changes: counts, texels, then samples and the sums of the decal's pieces where
+// asked for.
+struct WorkLayout {
+  std::size_t samples = 0, sums = 0, words = 0;  // In words of 8 bytes after the counts.
+
+  WorkLayout(std::size_t texels, bool has_samples, bool has_sums)
+      : samples(texels),
+        sums(samples + (has_samples ? texels : 0)),
+        words(sums + (has_sums ? 2 * texels : 0)) {}
+  [[nodiscard]] std::size_t bytes() const { return sizeof(WorkCounts) + words * sizeof(shader::uvec2); }
+};
+
+// The buffer of what the shading pass only reads.
+class Plan {
+ public:
+  // Appends; returns where the items begin.
+  template <class Item>
+  std::uint32_t add(std::span<const Item> items) {
+    const std::size_t first = words_.size();
+    words_.resize(first + (items.size_bytes() + sizeof(shader::uvec4) - 1) / sizeof(shader::uvec4));
+    if (!items.empty()) std::memcpy(&words_[first], items.data(), items.size_bytes());
+    return static_cast<std::uint32_t>(first);
+  }
+  [[nodiscard]] const std::vector<shader::uvec4>& words() const { return words_; }
+
+ private:
+  std::vector<shader::uvec4> words_;
 };
 
 // Rounds to nearest, ties to even; values are 0 to 1.
@@ -116,6 +145,16 @@ shader::FaceMap to_face_map(const Transfer& transfer, std::size_t index, const P
   return map;
 }
 
+// Some of them are empty where the tile is one texel wide or high.
+std::array<TexelRect, 4> quarters(const TexelRect& tile) {
+  const int left = (tile.width + 1) / 2, top = (tile.height + 1) / 2;
+  const int right = tile.width - left, bottom = tile.height - top;
+  return {{{tile.x, tile.y, left, top},
+           {tile.x + left, tile.y, right, top},
+           {tile.x, tile.y + top, left, bottom},
+           {tile.x + left, tile.y + top, right, bottom}}};
+}
+
 // Orders the passes: what one writes, the next reads.
 void barrier(const Device& device, VkCommandBuffer commands, VkPipelineStageFlags from,
              VkAccessFlags written) {
@@ -139,7 +178,6 @@ struct GpuTransfer::Run {
   std::vector<Buffer> decal{};  // The levels' texels, in as many pieces as the largest buffer asks for.
   std::size_t first_level = 0;  // In `decal`, once that is there.
   std::vector<shader::vec4> table{};
-  Buffer large_table{};
 
   std::vector<RefinedFace> refined{};  // By face; not cut where linear.
 
@@ -172,10 +210,10 @@ Result<GpuTransfer> GpuTransfer::create(const Device& device, const GpuTransferO
       result.cover_,
       ComputePipeline::create(
           device,
-          {"transfer cover", applique_spirv_transfer_cover, {0, 2}, {}, sizeof(shader::TransferConstants)}));
+          {"transfer cover", applique_spirv_transfer_cover, {0, 1}, {}, sizeof(shader::TransferConstants)}));
   APPLIQUE_TRY(result.nearest_, ComputePipeline::create(device, {"transfer nearest",
                                                                  applique_spirv_transfer_nearest,
-                                                                 {0, 1, 2},
+                                                                 {0, 1},
                                                                  {},
                                                                  sizeof(shader::TransferConstants)}));
   return result;
@@ -186,14 +224,11 @@ Result<const ComputePipeline*> GpuTransfer::shading_pipeline(Shading shading, st
   if (found == shade_.end()) {
     ComputePipelineInfo info{"transfer shade",
                              applique_spirv_transfer_shade,
-                             {0, 1, 2, 3, 4, 5, 6, 8, 10},
-                             {7},
+                             {0, 1, 2, 3},
+                             {4},
                              sizeof(shader::TransferConstants),
                              {shading != Shading::linear ? 1U : 0U, groups}};
-    if (shading == Shading::large_warp) {
-      info.spirv = applique_spirv_transfer_shade_large;
-      info.storage.push_back(9);
-    }
+    if (shading == Shading::large_warp) info.spirv = applique_spirv_transfer_shade_large;
     APPLIQUE_TRY(ComputePipeline pipeline, ComputePipeline::create(*device_, info));
     found = shade_.emplace(std::pair(shading, groups), std::move(pipeline)).first;
   }
@@ -231,23 +266,6 @@ Result<void> GpuTransfer::run_tile(Run& run, std::uint32_t sheet, const TexelRec
   const std::size_t foreign_first = plan.jobs.size();
   plan.jobs.insert(plan.jobs.end(), plan.foreign_jobs.begin(), plan.foreign_jobs.end());
 
-  // What does not fit into the device's buffers is done in smaller pieces.
-  const std::size_t work_texels = static_cast<std::size_t>(work.width) * work.height;
-  const std::size_t region_texels = static_cast<std::size_t>(region.width) * region.height;
-  const std::size_t largest =
-      std::max({16 * work_texels, 4 * region_texels, plan.jobs.size() * sizeof(plan.jobs[0]),
-                plan.placements.size() * sizeof(shader::FaceMap)});
-  if (largest > options_.max_buffer_bytes && std::max(tile.width, tile.height) > 1) {
-    const int left = (tile.width + 1) / 2, top = (tile.height + 1) / 2;
-    for (const TexelRect& part :
-         {TexelRect{tile.x, tile.y, left, top}, TexelRect{tile.x + left, tile.y, tile.width - left, top},
-          TexelRect{tile.x, tile.y + top, left, tile.height - top},
-          TexelRect{tile.x + left, tile.y + top, tile.width - left, tile.height - top}}) {
-      if (part.width > 0 && part.height > 0) APPLIQUE_CHECK(run_tile(run, sheet, part));
-    }
-    return {};
-  }
-
   std::vector<shader::FaceMap> faces;
   faces.reserve(plan.placements.size());
   std::vector<shader::vec2> points;
@@ -262,6 +280,24 @@ Result<void> GpuTransfer::run_tile(Run& run, std::uint32_t sheet, const TexelRec
   }
   const std::size_t piece_texels = options_.max_buffer_bytes / (4 * sizeof(std::uint16_t));
   APPLIQUE_CHECK(run.upload_decal(device, static_cast<std::size_t>(finest), piece_texels));
+  // What does not fit into the device's buffers is done in smaller pieces.
+  const std::size_t work_texels = static_cast<std::size_t>(work.width) * work.height;
+  const std::size_t region_texels = static_cast<std::size_t>(region.width) * region.height;
+  const WorkLayout work_layout(work_texels, run.keep_samples, run.decal.size() > 1);
+  // A large warp's table is in every tile's plan. Its share of a true device's 128 MiB is small.
+  const std::size_t room =
+      options_.max_buffer_bytes -
+      std::min<std::size_t>(options_.max_buffer_bytes / 2, std::span(run.table).size_bytes());
+  const std::size_t plan_bytes =
+      4 * plan.blocks.size() + std::span(faces).size_bytes() + std::span(points).size_bytes();
+  const std::size_t largest =
+      std::max({work_layout.bytes(), 8 * region_texels, std::span(plan.jobs).size_bytes()});
+  if ((largest > options_.max_buffer_bytes || plan_bytes > room) && std::max(tile.width, tile.height) > 1) {
+    for (const TexelRect& part : quarters(tile))
+      if (part.width > 0 && part.height > 0) APPLIQUE_CHECK(run_tile(run, sheet, part));
+    return {};
+  }
+
   const Shading shading = !warped                                           ? Shading::linear
                           : run.table.size() <= shader::warp_table_capacity ? Shading::warped
                                                                             : Shading::large_warp;
@@ -275,35 +311,35 @@ Result<void> GpuTransfer::run_tile(Run& run, std::uint32_t sheet, const TexelRec
     tables[0].levels[k] = {level.offset - image.levels[run.first_level].offset, level.width, level.height, 0};
   }
   if (shading == Shading::warped) std::copy(run.table.begin(), run.table.end(), tables[0].warp.begin());
-  if (shading == Shading::large_warp && run.large_table.size() == 0) {
-    APPLIQUE_TRY(run.large_table, make_buffer(device, "warp tables", run.table, storage));
-  }
 
-  std::vector<std::uint16_t> texels(4 * work_texels);
-  const std::size_t row = 4 * static_cast<std::size_t>(work.width);
-  for (int y = 0; y < work.height; ++y) {
-    std::memcpy(&texels[y * row], run.texture.pixel(work.x, work.y + y), row * sizeof(texels[0]));
-  }
-  APPLIQUE_TRY(const Buffer owner_buffer, Buffer::create(device, "owners", 4 * region_texels, storage));
-  APPLIQUE_TRY(const Buffer nearest_buffer, Buffer::create(device, "nearest", 4 * region_texels, storage));
+  shader::TransferConstants constants{};
+  Plan shading_plan;
+  shading_plan.add<std::uint32_t>(plan.blocks);  // First, as the shader has it.
+  constants.plan_faces = shading_plan.add<shader::FaceMap>(faces);
+  constants.plan_points = shading_plan.add<shader::vec2>(points);
+  if (shading == Shading::large_warp) constants.plan_warp = shading_plan.add<shader::vec4>(run.table);
+
+  constants.work_samples = static_cast<std::uint32_t>(work_layout.samples);
+  constants.work_sums = static_cast<std::uint32_t>(work_layout.sums);
+  std::vector<std::byte> work_bytes(work_layout.bytes());
+  const std::span<std::byte> texels = std::span(work_bytes).subspan(sizeof(WorkCounts), 8 * work_texels);
+  const std::span<std::byte> samples = std::span(work_bytes)
+                                           .subspan(sizeof(WorkCounts) + 8 * work_layout.samples,
+                                                    8 * (work_layout.sums - work_layout.samples));
+  std::fill(samples.begin(), samples.end(), std::byte{0xff});  // NaN
+  const std::size_t row = 8 * static_cast<std::size_t>(work.width);
+  for (int y = 0; y < work.height; ++y)
+    std::memcpy(&texels[y * row], run.texture.pixel(work.x, work.y + y), row);
+
+  APPLIQUE_TRY(const Buffer region_buffer, Buffer::create(device, "region", 8 * region_texels, storage));
   APPLIQUE_TRY(const Buffer job_buffer, make_buffer(device, "jobs", plan.jobs, storage));
   APPLIQUE_TRY(const Buffer near_block_buffer,
                make_buffer(device, "nearest blocks", plan.nearest_blocks, storage));
-  APPLIQUE_TRY(const Buffer block_buffer, make_buffer(device, "blocks", plan.blocks, storage));
-  APPLIQUE_TRY(const Buffer face_buffer, make_buffer(device, "faces", faces, storage));
-  APPLIQUE_TRY(const Buffer point_buffer, make_buffer(device, "points of refined faces", points, storage));
-  APPLIQUE_TRY(const Buffer texel_buffer, make_buffer(device, "texels", texels, storage));
+  APPLIQUE_TRY(const Buffer plan_buffer, make_buffer(device, "plan", shading_plan.words(), storage));
+  APPLIQUE_TRY(const Buffer work_buffer, make_buffer(device, "work", work_bytes, storage));
   APPLIQUE_TRY(const Buffer table_buffer,
                make_buffer(device, "tables", tables, VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT));
-  const std::size_t sample_bytes = sizeof(shader::vec2) * (run.keep_samples ? work_texels : 1);
-  APPLIQUE_TRY(const Buffer outcome_buffer,
-               Buffer::create(device, "outcome", sizeof(OutcomeCounts) + sample_bytes, storage));
 
-  APPLIQUE_TRY(
-      const Buffer sum_buffer,
-      Buffer::create(device, "sums of pieces", 16 * (run.decal.size() > 1 ? work_texels : 1), storage));
-
-  shader::TransferConstants constants{};
   constants.region_size = {region.width, region.height};
   constants.work_origin = {work.x - region.x, work.y - region.y};
   constants.work_size = {work.width, work.height};
@@ -321,13 +357,8 @@ Result<void> GpuTransfer::run_tile(Run& run, std::uint32_t sheet, const TexelRec
   constants.half_size = to_floats({0.5 * image.frame.width, 0.5 * image.frame.height});
   constants.pixels_per_unit = to_floats({image.frame.pixels_along_x(), -image.frame.pixels_per_unit()});
 
-  cover_.bind({{0, &owner_buffer}, {2, &job_buffer}});
-  nearest_.bind({{0, &owner_buffer}, {1, &nearest_buffer}, {2, &near_block_buffer}});
-  std::vector<ComputePipeline::Binding> bindings = {
-      {0, &owner_buffer},   {1, &nearest_buffer}, {2, &block_buffer}, {3, &face_buffer}, {4, &texel_buffer},
-      {6, &outcome_buffer}, {7, &table_buffer},   {8, &point_buffer}, {10, &sum_buffer}};
-  if (shading == Shading::large_warp) bindings.push_back({9, &run.large_table});
-  bindings.push_back({5, nullptr});  // The decal's piece.
+  cover_.bind({{0, &region_buffer}, {1, &job_buffer}});
+  nearest_.bind({{0, &region_buffer}, {1, &near_block_buffer}});
   const std::uint32_t most_groups = device.properties().limits.maxComputeWorkGroupCount[0];
   const auto dispatch = [&](VkCommandBuffer commands, const ComputePipeline& pipeline, std::size_t first,
                             std::size_t last) {
@@ -340,11 +371,8 @@ Result<void> GpuTransfer::run_tile(Run& run, std::uint32_t sheet, const TexelRec
   };
   APPLIQUE_CHECK(device.run([&](VkCommandBuffer commands) {
     const VolkDeviceTable& vk = device.functions();
-    vk.vkCmdFillBuffer(commands, owner_buffer.handle(), 0, VK_WHOLE_SIZE, 0);
-    vk.vkCmdFillBuffer(commands, nearest_buffer.handle(), 0, VK_WHOLE_SIZE, shader::no_texel);
-    vk.vkCmdFillBuffer(commands, outcome_buffer.handle(), 0, sizeof(OutcomeCounts), 0);
-    vk.vkCmdFillBuffer(commands, outcome_buffer.handle(), sizeof(OutcomeCounts), VK_WHOLE_SIZE,
-                       0xffffffff);  // NaN
+    vk.vkCmdFillBuffer(commands, region_buffer.handle(), 0, 4 * region_texels, 0);
+    vk.vkCmdFillBuffer(commands, region_buffer.handle(), 4 * region_texels, VK_WHOLE_SIZE, shader::no_texel);
     barrier(device, commands, VK_PIPELINE_STAGE_TRANSFER_BIT, VK_ACCESS_TRANSFER_WRITE_BIT);
     dispatch(commands, cover_, 0, foreign_first);
     dispatch(commands, cover_, foreign_first, plan.jobs.size());
@@ -355,26 +383,24 @@ Result<void> GpuTransfer::run_tile(Run& run, std::uint32_t sheet, const TexelRec
     constants.piece_size = static_cast<std::uint32_t>(run.decal[i].size() / (4 * sizeof(std::uint16_t)));
     constants.piece_flags =
         (i > 0 ? shader::piece_follows : 0) | (i + 1 < run.decal.size() ? shader::piece_goes_on : 0);
-    bindings.back() = {5, &run.decal[i]};
-    shade->bind(bindings);
+    shade->bind(
+        {{0, &region_buffer}, {1, &plan_buffer}, {2, &run.decal[i]}, {3, &work_buffer}, {4, &table_buffer}});
     APPLIQUE_CHECK(
         device.run([&](VkCommandBuffer commands) { dispatch(commands, *shade, 0, plan.blocks.size()); }));
   }
 
-  APPLIQUE_CHECK(texel_buffer.read(device, std::as_writable_bytes(std::span(texels))));
-  for (int y = 0; y < work.height; ++y) {
-    std::memcpy(run.texture.pixel(work.x, work.y + y), &texels[y * row], row * sizeof(texels[0]));
-  }
-  std::vector<std::byte> outcome(sizeof(OutcomeCounts) + (run.keep_samples ? sample_bytes : 0));
-  APPLIQUE_CHECK(outcome_buffer.read(device, outcome));
-  OutcomeCounts counts{};
-  std::memcpy(&counts, outcome.data(), sizeof(counts));
+  APPLIQUE_CHECK(
+      work_buffer.read(device, std::span(work_bytes).first(sizeof(WorkCounts) + 8 * work_layout.sums)));
+  for (int y = 0; y < work.height; ++y)
+    std::memcpy(run.texture.pixel(work.x, work.y + y), &texels[y * row], row);
+  WorkCounts counts{};
+  std::memcpy(&counts, work_bytes.data(), sizeof(counts));
   run.result.covered_texels += counts.covered;
   run.result.gutter_texels += counts.gutter;
   run.result.shared_texels += counts.shared;
   for (std::size_t i = 0; run.keep_samples && i < work_texels; ++i) {
     shader::vec2 sample;
-    std::memcpy(&sample, &outcome[sizeof(OutcomeCounts) + i * sizeof(sample)], sizeof(sample));
+    std::memcpy(&sample, &samples[i * sizeof(sample)], sizeof(sample));
     if (std::isnan(sample[0])) continue;
     run.result.samples.push_back({static_cast<std::uint32_t>(work.x + static_cast<int>(i % work.width)),
                                   static_cast<std::uint32_t>(work.y + static_cast<int>(i / work.width)),
