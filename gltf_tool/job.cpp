@@ -108,6 +108,7 @@ DecalJob decal_of(const json& decal, const std::filesystem::path& folder) {
   if (decal.contains("expmap") && decal["expmap"].value("parents", "upwind") == "one")
     out.parents = Parents::one;
   if (decal.contains("energy")) out.energy = energy_of(decal["energy"]);
+  out.guide = decal.value("guide", out.guide);
   out.overlap = decal.value("overlap", "stop") == "allow" ? Overlap::allow : Overlap::stop;
   return out;
 }

@@ -55,6 +55,7 @@ struct DecalJob {
   PlanarLimits planar;                ///< Of Method::planar.
   Parents parents = Parents::upwind;  ///< Of Method::expmap.
   Energy energy = Energy::isometric;
+  bool guide = false;  ///< As SolveOptions::guide.
   Overlap overlap = Overlap::stop;
 };
 

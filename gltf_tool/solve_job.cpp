@@ -130,6 +130,7 @@ SolveOptions options_of(const DecalJob& decal) {
   options.planar = decal.planar;
   options.parents = decal.parents;
   options.energy = decal.energy;
+  options.guide = decal.guide;
   options.overlap = decal.overlap;
   return options;
 }

@@ -165,6 +165,7 @@ class Solver {
     std::vector<SeedFeature> features;
     for (std::size_t k = 0; k < targets_.size(); ++k)
       features.push_back({input_.features[k].surface, targets_[k]});
+    map_.graph.tree = faithful_tree(surface_, features, map_.graph);
     auto seed = build_seed(bridged_, features, map_.graph.tree, attempt_.crossings);
     if (seed) crossed_ = seed->crossed;
     if (seed && options_.trace != nullptr) *options_.trace = {seed->paths, {}};
@@ -185,7 +186,10 @@ class Solver {
       // The last embedding, undone to the surface's scale, is where an isometric one may start from.
       std::vector<Vec2> start;
       for (const PatchPoint& point : points_) start.push_back(point.plane / scale_);
-      Embedding embedding = embed_disc(measure_disc(disc), options, start);
+      const std::vector<PlacedPoint> guide = options_.guide && groups_.count == 1
+                                                 ? placed_features(disc, growth, scale_)
+                                                 : std::vector<PlacedPoint>();
+      Embedding embedding = embed_disc(measure_disc(disc), {options.energy, options.rough, guide}, start);
       rung_ = embedding.rung;
       plane = std::move(embedding.plane);
       for (std::size_t k = 0; k < features.size(); ++k)
@@ -198,6 +202,20 @@ class Solver {
     for (std::size_t v = 0; v < plane.size(); ++v) points_[PatchVertexId(v)].plane = plane[v];
     warp_points(disc, growth, plane, features);
     return {};
+  }
+
+  /// The features in the disc's triangles, and their places in the image at `scale` plane units to one.
+  [[nodiscard]] std::vector<PlacedPoint> placed_features(const ImmersedDisc& disc, const Growth& growth,
+                                                         double scale) const {
+    std::vector<PlacedPoint> features;
+    for (std::size_t k = 0; k < targets_.size(); ++k) {
+      const auto& v = disc.faces()[growth.feature_faces()[k]].vertices;
+      features.push_back(
+          {{static_cast<int>(v[0].value), static_cast<int>(v[1].value), static_cast<int>(v[2].value)},
+           input_.features[k].surface.barycentric,
+           targets_[k] / scale});
+    }
+    return features;
   }
 
   Result<void> align(const ImmersedDisc& disc, const Growth& growth, std::vector<Vec2>& features,
@@ -440,14 +458,7 @@ class Solver {
   /// Where the embedding or the warp has turned triangles over: a map that turns none over and is linear in
   /// each of them takes the warp's place, if there is one.
   void unfold(const ImmersedDisc& disc, const Growth& growth) {
-    std::vector<PlacedPoint> features;
-    for (std::size_t k = 0; k < targets_.size(); ++k) {
-      const auto& v = disc.faces()[growth.feature_faces()[k]].vertices;
-      features.push_back(
-          {{static_cast<int>(v[0].value), static_cast<int>(v[1].value), static_cast<int>(v[2].value)},
-           input_.features[k].surface.barycentric,
-           targets_[k]});
-    }
+    const std::vector<PlacedPoint> features = placed_features(disc, growth, 1);
     Unfolded unfolded = unfold_image(measure_disc(disc), scale_, map_.image.raw(), features);
     at_fault_ = std::move(unfolded.at_fault);
     if (unfolded.flips > 0) return;

@@ -396,6 +396,30 @@ TEST(Decal, GoesRoundAClosedSurfaceOnlyOnce) {
   EXPECT_LE(map->patch.faces.size(), surface.faces.size());
 }
 
+TEST(Decal, IsNotLedRoundTheBackByFeaturesThatAreNearThere) {
+  // Eight features round one, so far from it that each is nearer to the next by the far side of the sphere.
+  const SurfaceMesh mesh = shapes::sphere(4, 1).weld();
+  constexpr double reach = 2.4;
+  std::vector<Pixel> contour;
+  for (int k = 0; k < 48; ++k) {
+    const double angle = k * std::numbers::pi / 24;
+    contour.push_back({256 + 220 * std::cos(angle), 256 + 220 * std::sin(angle)});
+  }
+  std::vector<Pin> pins = {{{256, 256}, {0, 0, 1}}};
+  for (int k = 0; k < 8; ++k) {
+    const double angle = 0.1 + k * std::numbers::pi / 4;
+    const Vec3 out(std::cos(angle), std::sin(angle), 0);
+    pins.push_back({{256 + 200 * out.x(), 256 - 200 * out.y()},
+                    std::sin(reach) * out + std::cos(reach) * Vec3::UnitZ()});
+  }
+  const auto map = solve_decal(mesh, decal(mesh, *Region::from_contour(contour, frame), pins));
+  ASSERT_TRUE(map.has_value()) << map.error().message;
+  EXPECT_EQ(map->sheets, 1U);
+  EXPECT_EQ(map->quality.flipped_plane + map->quality.flipped_image, 0U);
+  EXPECT_LT(map->quality.coverage, 1.005);
+  EXPECT_LT(map->quality.l2_stretch, 2);
+}
+
 TEST(Decal, CostDoesNotFollowTheSurface) {
   // The same small decal on a plane and on one with 16 times the area: the patch is the same.
   std::size_t faces = 0;

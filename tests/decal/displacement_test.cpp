@@ -141,5 +141,39 @@ TEST(Displacements, AreMetExactlyAndTurnNothingOver) {
   EXPECT_GT(tally.share_solved(), 0.98);
 }
 
+/// How far the warp has to move the features, root of the mean square.
+double left_to_the_warp(const DecalMap& map) {
+  double sum = 0;
+  for (const FeatureStress& feature : map.stress.features) sum += feature.shift * feature.shift;
+  return std::sqrt(sum / static_cast<double>(map.stress.features.size()));
+}
+
+TEST(Displacements, AreLessWorkForTheWarpWithAGuide) {
+  for (const Shape& shape : shapes_to_cover()) {
+    constexpr int count = 12;
+    std::vector<std::array<double, 2>> work(count), stretch(count);
+    parallel_for(count, [&](int i) {
+      const DecalInput input = displaced_decal(shape, static_cast<std::uint32_t>(i));
+      for (const bool guide : {false, true}) {
+        SolveOptions options;
+        options.guide = guide;
+        const auto map = solve_decal(shape.mesh, input, options);
+        EXPECT_EQ(random_decals::outcome(map), "solved") << shape.name << " " << i;
+        if (!map) continue;
+        work[i][guide] = left_to_the_warp(*map);
+        stretch[i][guide] = map->quality.l2_stretch;
+      }
+    });
+    double share = 0, by_stretch = 0;
+    for (int i = 0; i < count; ++i) {
+      share += work[i][1] / work[i][0] / count;
+      by_stretch += std::log(stretch[i][1] / stretch[i][0]) / count;
+    }
+    EXPECT_LT(share, 0.9) << shape.name;
+    std::printf("%s: a guide leaves %.2f of the shifts and %.3f times the L2 stretch\n", shape.name.c_str(),
+                share, std::exp(by_stretch));
+  }
+}
+
 }  // namespace
 }  // namespace applique

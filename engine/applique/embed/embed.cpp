@@ -26,8 +26,10 @@ void scale_to_area(const DiscGeometry& disc, std::vector<Vec2>& plane) {
 
 constexpr double rough_tolerance = 1e-3;
 
-Embedding descend(const DiscGeometry& disc, const EmbedOptions& options, const std::vector<Vec2>& start) {
+Embedding descend(const DiscGeometry& disc, const EmbedOptions& options, const std::vector<Vec2>& start,
+                  std::span<const PlacedPoint> guide = {}) {
   SymmetricDirichletOptions descent;
+  descent.guide = guide;
   descent.isometry = options.energy.isometry;
   if (options.rough) descent.tolerance = rough_tolerance;
   Embedding embedding{relax_symmetric_dirichlet(disc, start, descent), EmbeddingRung::isometric, 0};
@@ -39,7 +41,7 @@ Embedding descend(const DiscGeometry& disc, const EmbedOptions& options, const s
 
 Embedding embed_disc(const DiscGeometry& disc, const EmbedOptions& options, const std::vector<Vec2>& start) {
   if (options.energy != Energy::conformal && !start.empty() && count_flips(disc, start) == 0)
-    return descend(disc, options, start);
+    return descend(disc, options, start, options.guide);
   Embedding embedding{flatten_boundary_first(disc), EmbeddingRung::conformal, 0};
   if (!finite(embedding.plane) || (embedding.flips = count_flips(disc, embedding.plane)) > 0) {
     std::vector<Vec2> circle = embed_on_circle(disc);

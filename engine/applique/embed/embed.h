@@ -1,8 +1,10 @@
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "applique/embed/disc_geometry.h"
+#include "applique/embed/placed_point.h"
 
 namespace applique {
 
@@ -34,6 +36,9 @@ struct Embedding {
 struct EmbedOptions {
   Energy energy = Energy::isometric;
   bool rough = false;  ///< The disc is going to change: stops earlier.
+  /// Draws points to targets where `start` says what frame these are in; else, and conformally, without
+  /// effect.
+  std::span<const PlacedPoint> guide{};
 };
 
 /// Embeds the disc in the plane with a free boundary (§5.1 of the paper; §4.2 and §4.3 of the design):

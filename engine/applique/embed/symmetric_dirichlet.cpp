@@ -43,6 +43,45 @@ double stiffness(double s, double across, double isometry) {
   return isometry * (1 + inverse) * (1 + inverse + inverse * inverse) + 2 * (1 - isometry) * inverse / across;
 }
 
+// Draws points of the disc to their targets.
+class Guide {
+ public:
+  Guide(const DiscGeometry& disc, std::span<const PlacedPoint> points) : points_(points) {
+    Vec2 middle = 0;
+    double spread = 0;
+    for (const PlacedPoint& point : points) middle += point.target / static_cast<double>(points.size());
+    for (const PlacedPoint& point : points) spread += std::norm(point.target - middle);
+    weight_ = spread > 0 ? disc.area / spread : 0;
+  }
+
+  // Adds its part to the gradient.
+  double energy(const PlanePoints& plane, PlanePoints& gradient) const {
+    double sum = 0;
+    for (const auto& [corners, barycentric, target] : points_) {
+      Vec2 away = -target;
+      for (std::size_t k = 0; k < 3; ++k) away += barycentric[k] * plane[corners[k]];
+      sum += weight_ * std::norm(away);
+      for (std::size_t k = 0; k < 3; ++k) gradient[corners[k]] += 2 * weight_ * barycentric[k] * away;
+    }
+    return sum;
+  }
+
+  // Calls add(row, column, value) for the lower triangle of its part of the Hessian.
+  template <class Add>
+  void for_each_stiffness(Add add) const {
+    for (const PlacedPoint& point : points_)
+      for (std::size_t i = 0; i < 3; ++i)
+        for (std::size_t j = 0; j <= i; ++j) {
+          const auto [column, row] = std::minmax(point.corners[i], point.corners[j]);
+          add(row, column, 2 * weight_ * point.barycentric[i] * point.barycentric[j]);
+        }
+  }
+
+ private:
+  std::span<const PlacedPoint> points_;
+  double weight_ = 0;
+};
+
 /// The Laplacian that stands for the energy's Hessian; its pattern is built once.
 class WeightedLaplacian {
  public:
@@ -64,10 +103,12 @@ class WeightedLaplacian {
   }
 
   /// Weighs the triangles by how `plane` stretches them; false when the matrix cannot be factored.
-  bool renew(const PlanePoints& plane) {
+  bool renew(const PlanePoints& plane, const Guide& guide) {
     std::fill_n(matrix_.valuePtr(), matrix_.nonZeros(), 0.0);
     for (std::size_t t = 0; t < rest_.size(); ++t)
       add_triangle(t, TriangleMap(rest_[t], disc_.faces[t], plane));
+    guide.for_each_stiffness(
+        [&](int row, int column, double value) { matrix_.coeffRef(row, column) += value; });
     // The energy does not see motions of the plane: a trace of the diagonal holds them.
     const double hold = 1e-8 * matrix_.diagonal().mean();
     for (Eigen::Index i = 0; i < matrix_.rows(); ++i) matrix_.coeffRef(i, i) += hold;
@@ -124,8 +165,10 @@ std::vector<Vec2> relax_symmetric_dirichlet(const DiscGeometry& disc, const std:
   constexpr int most_steps = 10;    // on one Laplacian
   constexpr double outdated = 0.8;  // of the energy at which the Laplacian was weighted
   const std::vector<RestTriangle> rest = rest_triangles(disc);
+  const Guide guide(disc, options.guide);
   const auto energy = [&](const PlanePoints& places, PlanePoints& slope) {
-    return triangle_energy(disc.faces, rest, places, Distortion{options.isometry}, slope);
+    const double stretch = triangle_energy(disc.faces, rest, places, Distortion{options.isometry}, slope);
+    return stretch + guide.energy(places, slope);
   };
   PlanePoints at = Eigen::Map<const PlanePoints>(plane.data(), static_cast<Eigen::Index>(plane.size()));
   PlanePoints gradient, next, next_gradient;
@@ -137,7 +180,7 @@ std::vector<Vec2> relax_symmetric_dirichlet(const DiscGeometry& disc, const std:
   int steps = most_steps, small = 0;
   for (int iteration = 0; iteration < options.max_iterations && small < 2; ++iteration) {
     if (steps == most_steps || value < outdated * weighted_at) {
-      if (!laplacian.renew(at)) break;
+      if (!laplacian.renew(at, guide)) break;
       history.clear();
       weighted_at = value;
       steps = 0;

@@ -1,8 +1,10 @@
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "applique/embed/disc_geometry.h"
+#include "applique/embed/placed_point.h"
 
 namespace applique {
 
@@ -10,6 +12,7 @@ struct SymmetricDirichletOptions {
   double isometry = 1;  ///< In [0, 1]: how much areas count beside angles.
   int max_iterations = 100;
   double tolerance = 1e-4;  ///< Stops when two steps in a row lower the energy by less than this share of it.
+  std::span<const PlacedPoint> guide{};  ///< Points that are drawn to their targets.
 };
 
 /// Minimises the area integral of
@@ -22,6 +25,9 @@ struct SymmetricDirichletOptions {
 /// parameterizations (Hormann and Greiner 2000). `plane` turns no triangle over and is of the disc's own
 /// scale; neither does the result, since the energy is infinite at a collapse and no step goes that far. A
 /// `plane` that does is returned as it is.
+///
+/// A guide adds, over its points, the disc's area times the mean of their squared distances from the targets
+/// in terms of how far the targets spread (§4.4 of the design, whose weight has no such unit).
 ///
 /// Steps are those of L-BFGS over a Laplacian that weighs the two directions of each triangle's stretch as
 /// scalable locally injective mappings do (Rabinovich et al. 2017), renewed as the map changes. It is one

@@ -5,15 +5,9 @@
 #include <vector>
 
 #include "applique/base/types.h"
+#include "applique/embed/placed_point.h"
 
 namespace applique {
-
-/// A place in a triangle that is to lie at `target`.
-struct PlacedPoint {
-  std::array<int, 3> corners;         ///< Vertices.
-  std::array<double, 3> barycentric;  ///< Sum 1.
-  Vec2 target;
-};
 
 /// A triangulation whose map to the plane turns triangles over.
 struct Tangle {

@@ -1,6 +1,10 @@
 #include "applique/patch/seed.h"
 
 #include <algorithm>
+#include <iterator>
+#include <limits>
+#include <numeric>
+#include <tuple>
 #include <unordered_map>
 
 #include "applique/surface/shortest_path.h"
@@ -8,6 +12,7 @@
 namespace applique {
 namespace {
 
+constexpr double short_cut = 2;    // times the usual scale: the way over the surface is not the image's
 constexpr double far_share = 0.1;  // of the features' extent: farther apart in the image are two sheets
 
 /// An edge of the tree on the surface, in the order in which it is walked.
@@ -57,6 +62,20 @@ tl::expected<std::vector<Strand>, SeedFailure> lay_strands(const SurfaceMesh& me
     strand.scale = length > 0 ? std::abs(to.image - from.image) / length : 0;
   }
   return strands;
+}
+
+/// Image per surface along the shortest way between two features; infinite where there is none.
+double scale_along(const SurfaceMesh& mesh, const SeedFeature& from, const SeedFeature& to) {
+  const std::vector<VertexId> path = shortest_path(mesh, from.surface, to.surface);
+  if (path.empty()) return std::numeric_limits<double>::infinity();
+  const Vec3 end = position_of(mesh, to.surface);
+  Vec3 last = position_of(mesh, from.surface);
+  double length = (mesh.positions[path.back()] - end).norm();
+  for (VertexId v : path) {
+    length += (mesh.positions[v] - last).norm();
+    last = mesh.positions[v];
+  }
+  return std::abs(to.image - from.image) / length;
 }
 
 /// How many sheets each face near the paths has: as many as there are strands over it that lie far apart in
@@ -203,6 +222,51 @@ class Thickening {
 };
 
 }  // namespace
+
+std::vector<FeaturePair> faithful_tree(const SurfaceMesh& mesh, std::span<const SeedFeature> features,
+                                       const FeatureGraph& graph) {
+  struct Edge {
+    double scale, image_length;
+    FeaturePair pair;
+  };
+  const auto measure = [&](std::span<const FeaturePair> pairs) {
+    std::vector<Edge> edges;
+    for (const FeaturePair pair : pairs) {
+      const SeedFeature &a = features[pair[0]], &b = features[pair[1]];
+      edges.push_back({scale_along(mesh, a, b), std::abs(b.image - a.image), pair});
+    }
+    std::sort(edges.begin(), edges.end(), [](const Edge& a, const Edge& b) {
+      return std::tie(a.scale, a.pair) < std::tie(b.scale, b.pair);
+    });
+    return edges;
+  };
+  if (graph.planar.size() < 3) return graph.tree;
+  std::vector<Edge> edges = measure(graph.tree);
+  if (edges.back().scale <= short_cut * edges.front().scale) return graph.tree;
+
+  std::vector<FeaturePair> candidates = graph.tree;
+  std::set_difference(graph.planar.begin(), graph.planar.end(), graph.tree.begin(), graph.tree.end(),
+                      std::back_inserter(candidates));
+  edges = measure(candidates);
+  const double usual = edges[edges.size() / 4].scale;
+  // Faithful ones come first, as in the graph by their length; the others as little short cuts as can be.
+  const auto rest = std::partition_point(edges.begin(), edges.end(),
+                                         [&](const Edge& edge) { return edge.scale <= short_cut * usual; });
+  std::sort(edges.begin(), rest, [](const Edge& a, const Edge& b) {
+    return std::tie(a.image_length, a.pair) < std::tie(b.image_length, b.pair);
+  });
+  std::vector<std::uint32_t> part(features.size());
+  std::iota(part.begin(), part.end(), 0);
+  std::vector<FeaturePair> tree;
+  for (const Edge& edge : edges) {
+    const std::uint32_t a = part[edge.pair[0]], b = part[edge.pair[1]];
+    if (a == b) continue;
+    std::replace(part.begin(), part.end(), b, a);
+    tree.push_back(edge.pair);
+  }
+  std::sort(tree.begin(), tree.end());
+  return tree;
+}
 
 tl::expected<Seed, SeedFailure> build_seed(BridgedSurface& surface, std::span<const SeedFeature> features,
                                            std::span<const FeaturePair> tree, Crossings crossings) {

@@ -28,6 +28,13 @@ struct SeedFeature {
   Vec2 image;            ///< Plane units.
 };
 
+/// The feature graph's tree, but for edges whose shortest way over the surface leads another way than the
+/// image does: round the back of a sphere, features far apart in the image are close. Such an edge is much
+/// shorter than the others on the surface for its length in the image; others of the planar graph take its
+/// place where they can. Not in the design.
+std::vector<FeaturePair> faithful_tree(const SurfaceMesh& mesh, std::span<const SeedFeature> features,
+                                       const FeatureGraph& graph);
+
 /// What paths that cross on the surface are: parts of the image that lie over one another there, or of one
 /// sheet all the same, whose features were moved past one another.
 enum class Crossings { overlap, one_sheet };
