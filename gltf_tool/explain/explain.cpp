@@ -227,9 +227,11 @@ class Picture {
       const auto& contour = steps[shown.back()].contour;
       extent.insert(extent.end(), contour.begin(), contour.end());
     }
+    // Patches on the way may be far larger than the last.
+    extent.insert(extent.end(), steps.back().plane.begin(), steps.back().plane.end());
     const auto panels = lay_out(options_.size, count, aspect_of(extent));
     for (std::size_t i = 0; i < count; ++i) {
-      draw_step(steps[shown[i]], panels[i], fit(extent, panels[i], 0.1));
+      draw_step(steps[shown[i]], panels[i], fit(extent, panels[i]));
       const double height = 1.6 * pen_for(panels[i]).mark;
       draw_number(canvas_, shown[i], panels[i].low + Vec2(height, height), height, solid(palette::ink));
     }
