@@ -71,10 +71,10 @@ Row row_of(const CaseName& name, const std::string& method, const DecalMap& map)
   const MapQuality& quality = map.quality;
   const auto worst = std::max_element(quality.feature_residual.begin(), quality.feature_residual.end());
   Row row{name, method, "solved", {}, {}};
-  row.figures = {quality.l2_stretch,       quality.linf_stretch,
-                 quality.angle_distortion, quality.area_distortion,
-                 quality.flipped_image,    worst == quality.feature_residual.end() ? 0 : *worst,
-                 quality.coverage,         map.times.total};
+  row.figures = {
+      quality.l2_stretch,      quality.linf_stretch,  quality.angle_distortion,
+      quality.area_distortion, quality.flipped_image, worst == quality.feature_residual.end() ? 0 : *worst,
+      quality.coverage,        quality.area,          map.times.total};
   if (map.status == Coverage::not_converged)
     row.status = fmt::format("stopped after {} embeddings, the region not yet covered", map.solves);
   return row;

@@ -43,6 +43,7 @@ struct Figures {
   std::uint32_t flips = 0;        ///< Faces turned over in the image.
   double residual_px = 0;         ///< The largest of the features.
   double coverage = 0;            ///< Of the region's area.
+  double surface = 0;             ///< Surface area under the region, scene units squared.
   std::optional<double> seconds;  ///< The solve's; none of what another program did.
 };
 

@@ -21,12 +21,13 @@ std::vector<std::string> rounded(const Row& row) {
   std::vector<std::string> cells = {row.name.region, std::to_string(row.name.pins), row.method};
   if (row.figures) {
     const Figures& f = *row.figures;
-    cells.insert(cells.end(), {fmt::format("{:.4f}", f.l2), fmt::format("{:.3g}", f.linf),
-                               fmt::format("{:.4f}", f.angle), fmt::format("{:.4f}", f.area),
-                               std::to_string(f.flips), fmt::format("{:.2g}", f.residual_px),
-                               fmt::format("{:.1f} %", 100 * f.coverage), seconds_of(f)});
+    cells.insert(
+        cells.end(),
+        {fmt::format("{:.4f}", f.l2), fmt::format("{:.3g}", f.linf), fmt::format("{:.4f}", f.angle),
+         fmt::format("{:.4f}", f.area), std::to_string(f.flips), fmt::format("{:.2g}", f.residual_px),
+         fmt::format("{:.1f} %", 100 * f.coverage), fmt::format("{:.4g}", f.surface), seconds_of(f)});
   } else {
-    cells.insert(cells.end(), 8, "");
+    cells.insert(cells.end(), 9, "");
   }
   cells.push_back(row.status);
   return cells;
@@ -50,7 +51,7 @@ TextTable summary_table(const std::vector<Row>& rows) {
 
 TextTable full_table(const std::vector<Row>& rows) {
   TextTable table{{"surface", "region", "features", "method", "l2", "linf", "angle", "area", "flips",
-                   "residual_px", "coverage", "seconds", "status"},
+                   "residual_px", "coverage", "surface", "seconds", "status"},
                   {}};
   for (const Row& row : rows) {
     std::vector<std::string> cells = {row.name.site, row.name.region, std::to_string(row.name.pins),
@@ -59,10 +60,11 @@ TextTable full_table(const std::vector<Row>& rows) {
       const Figures& f = *row.figures;
       for (const double value : {f.l2, f.linf, f.angle, f.area}) cells.push_back(fmt::format("{}", value));
       cells.push_back(std::to_string(f.flips));
-      for (const double value : {f.residual_px, f.coverage}) cells.push_back(fmt::format("{}", value));
+      for (const double value : {f.residual_px, f.coverage, f.surface})
+        cells.push_back(fmt::format("{}", value));
       cells.push_back(seconds_of(f));
     } else {
-      cells.insert(cells.end(), 8, "");
+      cells.insert(cells.end(), 9, "");
     }
     cells.push_back(row.status);
     table.rows.push_back(std::move(cells));
@@ -72,7 +74,7 @@ TextTable full_table(const std::vector<Row>& rows) {
 
 TextTable site_table(const std::vector<Row>& rows, const std::string& site) {
   TextTable table{{"region", "features", "method", "L2", "Linf", "angle", "area", "flips", "residual (px)",
-                   "coverage", "s", "status"},
+                   "coverage", "surface", "s", "status"},
                   {}};
   for (const Row& row : rows)
     if (row.name.site == site) table.rows.push_back(rounded(row));
@@ -85,7 +87,8 @@ std::vector<std::string> explanations() {
 (engine/applique/quality/map_quality.h). L2 and Linf are the stretch of Sander et al. 2001, normalised so that an
 isometry up to scale has 1; angle and area are the area means of s1/s2 and of max(s1 s2, 1/(s1 s2)); flips are
 faces turned over in the image, which the means leave out; the residual is the largest distance of a feature from
-its pixel in an image of 512 x 512; coverage is the share of the region that lands on the surface. Seconds are the
+its pixel in an image of 512 x 512; coverage is the share of the region that lands on the surface; surface is the area there that shows the image, in the
+model's units squared: a map that shows all of the image on a smaller part of the surface leaves out what bends most. Seconds are the
 solve's, taken while every core is busy: they are printed, not judged.)",
       R"(Features lie where someone would put them who wants the picture undistorted: at the surface points where the
 default method (isometric) has their image points when it is given the first one alone, with the size named below
