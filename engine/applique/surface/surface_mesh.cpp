@@ -1,9 +1,10 @@
 #include "applique/surface/surface_mesh.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <numeric>
-#include <unordered_map>
+#include <tuple>
 
 namespace applique {
 namespace {
@@ -24,7 +25,7 @@ class Welder {
     origin_ = lower;
     tolerance_ = weld_tolerance * (upper - lower).norm();
     cell_ = tolerance_ > 0 ? 16 * tolerance_ : 1;
-    cells_.reserve(positions.size());
+    cells_.resize(std::bit_ceil(2 * positions.size()), {0, none});
   }
 
   std::vector<std::uint32_t> run() {
@@ -48,20 +49,30 @@ class Welder {
     for (std::int64_t x = low[0]; x <= high[0]; ++x)
       for (std::int64_t y = low[1]; y <= high[1]; ++y)
         for (std::int64_t z = low[2]; z <= high[2]; ++z) {
-          const auto cell = cells_.find(key(x, y, z));
-          if (cell == cells_.end()) continue;
-          for (std::uint32_t j = cell->second; j != none; j = next_[j])
+          for (std::uint32_t j = cell_of(key(x, y, z)).first; j != none; j = next_[j])
             if ((positions_[i] - positions_[j]).norm() <= tolerance_) return j;
         }
-    std::uint32_t& head = cells_
-                              .try_emplace(key(static_cast<std::int64_t>(std::floor(scaled[0])),
-                                               static_cast<std::int64_t>(std::floor(scaled[1])),
-                                               static_cast<std::int64_t>(std::floor(scaled[2]))),
-                                           none)
-                              .first->second;
-    next_[i] = head;
-    head = i;
+    const std::uint64_t own = key(static_cast<std::int64_t>(std::floor(scaled[0])),
+                                  static_cast<std::int64_t>(std::floor(scaled[1])),
+                                  static_cast<std::int64_t>(std::floor(scaled[2])));
+    Cell& cell = cell_of(own);
+    cell.key = own;
+    next_[i] = cell.first;
+    cell.first = i;
     return i;
+  }
+
+  struct Cell {
+    std::uint64_t key;
+    std::uint32_t first;  ///< Position in it; none where the table is free.
+  };
+
+  /// The place of a cell in the table, by linear probing: its own, or a free one.
+  Cell& cell_of(std::uint64_t key) {
+    const std::size_t mask = cells_.size() - 1;
+    std::size_t at = (key ^ key >> 32) & mask;
+    while (cells_[at].first != none && cells_[at].key != key) at = (at + 1) & mask;
+    return cells_[at];
   }
 
   static std::uint64_t key(std::int64_t x, std::int64_t y, std::int64_t z) {
@@ -74,8 +85,8 @@ class Welder {
   Vec3 origin_ = Vec3::Zero();
   double tolerance_ = 0;
   double cell_ = 1;
-  std::unordered_map<std::uint64_t, std::uint32_t> cells_;  // cell -> first position in it
-  std::vector<std::uint32_t> next_;                         // next position in the same cell
+  std::vector<Cell> cells_;          // a power of two, at most half of it taken
+  std::vector<std::uint32_t> next_;  // next position in the same cell
 };
 
 /// One side of an edge: edge `edge` of face `face`, from vertex `from` to vertex `to`.
@@ -114,22 +125,42 @@ bool join_edge(SurfaceMesh& mesh, std::span<Side> sides) {
   return false;
 }
 
-void join_faces(SurfaceMesh& mesh, std::span<const std::array<std::uint32_t, 3>> triangles) {
-  std::vector<Side> sides;
-  sides.reserve(3 * mesh.faces.size());
-  for (FaceId f : ids<FaceId>(mesh.faces.size())) {
+/// The sides of all edges, sorted by vertices and face: into buckets of the lower vertex first, which are
+/// small.
+std::vector<Side> sorted_sides(const SurfaceMesh& mesh,
+                               std::span<const std::array<std::uint32_t, 3>> triangles) {
+  const auto lower = [&](FaceId f, int k) {
+    return std::min(mesh.faces[f][(k + 1) % 3], mesh.faces[f][(k + 2) % 3]).value;
+  };
+  std::vector<std::uint32_t> start(mesh.positions.size() + 1, 0);
+  for (FaceId f : ids<FaceId>(mesh.faces.size()))
+    for (int k = 0; k < 3; ++k) ++start[lower(f, k) + 1];
+  std::partial_sum(start.begin(), start.end(), start.begin());
+  std::vector<Side> sides(3 * mesh.faces.size());
+  std::vector<std::uint32_t> next(start.begin(), start.end() - 1);
+  for (FaceId f : ids<FaceId>(mesh.faces.size()))
     for (std::uint8_t k = 0; k < 3; ++k) {
       const int from = (k + 1) % 3, to = (k + 2) % 3;
       const VertexId a = mesh.faces[f][from], b = mesh.faces[f][to];
       const auto& input = triangles[mesh.source[f]];
       const bool forward = a < b;
-      sides.push_back({std::min(a, b), std::max(a, b), f, k, forward,
-                       forward ? std::array{input[from], input[to]} : std::array{input[to], input[from]}});
+      sides[next[lower(f, k)]++] = {
+          std::min(a, b),
+          std::max(a, b),
+          f,
+          k,
+          forward,
+          forward ? std::array{input[from], input[to]} : std::array{input[to], input[from]}};
     }
-  }
-  std::sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) {
-    return std::tie(a.low, a.high, a.face, a.edge) < std::tie(b.low, b.high, b.face, b.edge);
-  });
+  for (std::size_t v = 0; v + 1 < start.size(); ++v)
+    std::sort(sides.begin() + start[v], sides.begin() + start[v + 1], [](const Side& a, const Side& b) {
+      return std::tie(a.high, a.face, a.edge) < std::tie(b.high, b.face, b.edge);
+    });
+  return sides;
+}
+
+void join_faces(SurfaceMesh& mesh, std::span<const std::array<std::uint32_t, 3>> triangles) {
+  std::vector<Side> sides = sorted_sides(mesh, triangles);
   mesh.neighbours.resize(mesh.faces.size());
   mesh.neighbour_edges.resize(mesh.faces.size());
   for (std::size_t first = 0; first < sides.size();) {

@@ -35,8 +35,8 @@ struct Box {
   }
 };
 
-/// A node of the hierarchy: a leaf has `count` faces from `first` on; an inner node has its children at
-/// `first` and `first + 1`.
+/// A node of the hierarchy: a leaf, or a node that no query has visited yet, has `count` faces from `first`
+/// on; another has its children at `first` and `first + 1`.
 struct Node {
   Box box;
   std::uint32_t first = 0;
@@ -145,34 +145,35 @@ double entry(const Ray& ray, const Box& box) {
 
 struct SurfaceQuery::Tree {
   std::vector<Node> nodes;
-  std::vector<FaceId> faces;
+  std::vector<std::uint32_t> order;  ///< Faces, each node's own in a row.
+  std::vector<Box> boxes;            ///< By face.
 
-  explicit Tree(const SurfaceMesh& mesh) {
-    const std::size_t count = mesh.faces.size();
-    std::vector<Box> boxes(count);
-    for (const FaceId f : ids<FaceId>(count))
+  explicit Tree(const SurfaceMesh& mesh) : order(mesh.faces.size()), boxes(mesh.faces.size()) {
+    for (const FaceId f : ids<FaceId>(mesh.faces.size()))
       for (const Vec3& p : mesh.corners(f)) boxes[f.value].add(p);
-    std::vector<std::uint32_t> order(count);
     std::iota(order.begin(), order.end(), 0U);
-    nodes.reserve(count);
-    nodes.push_back({{}, 0, static_cast<std::uint32_t>(count)});
-    for (std::size_t i = 0; i < nodes.size(); ++i) split(i, boxes, order);
-    faces.reserve(count);
-    for (const std::uint32_t f : order) faces.emplace_back(f);
+    add_node(0, static_cast<std::uint32_t>(order.size()));
   }
 
-  /// Fits the node's box and divides its faces where the binned surface area heuristic is least (Wald 2007).
-  void split(std::size_t index, const std::vector<Box>& boxes, std::vector<std::uint32_t>& order) {
+  /// A node that is a leaf or has children: it is divided when it is first visited.
+  const Node& visit(std::uint32_t index) {
+    if (nodes[index].count > leaf_size) split(index);
+    return nodes[index];
+  }
+
+ private:
+  void add_node(std::uint32_t first, std::uint32_t count) {
+    Box box;
+    for (std::uint32_t i = first; i < first + count; ++i) box.add(boxes[order[i]]);
+    nodes.push_back({box, first, count});
+  }
+
+  /// Divides the node's faces where the binned surface area heuristic is least (Wald 2007).
+  void split(std::uint32_t index) {
     const std::uint32_t first = nodes[index].first;
     const std::uint32_t count = nodes[index].count;
-    Box box;
     Box centres;
-    for (std::uint32_t i = first; i < first + count; ++i) {
-      box.add(boxes[order[i]]);
-      centres.add(centre(boxes[order[i]]));
-    }
-    nodes[index].box = box;
-    if (count <= leaf_size) return;
+    for (std::uint32_t i = first; i < first + count; ++i) centres.add(centre(boxes[order[i]]));
     int axis = 0;
     const double extent = (centres.upper - centres.lower).maxCoeff(&axis);
     std::uint32_t left = count / 2;
@@ -181,7 +182,7 @@ struct SurfaceQuery::Tree {
         const double x = (centre(boxes[f])[axis] - centres.lower[axis]) / extent;
         return std::min(bins - 1, static_cast<int>(x * bins));
       };
-      const int border = best_border(boxes, order, first, count, bin_of);
+      const int border = best_border(first, count, bin_of);
       const auto begin = order.begin() + first;
       left = static_cast<std::uint32_t>(
           std::partition(begin, begin + count, [&](std::uint32_t f) { return bin_of(f) < border; }) - begin);
@@ -189,14 +190,13 @@ struct SurfaceQuery::Tree {
     }
     nodes[index].first = static_cast<std::uint32_t>(nodes.size());
     nodes[index].count = 0;
-    nodes.push_back({{}, first, left});
-    nodes.push_back({{}, first + left, count - left});
+    add_node(first, left);
+    add_node(first + left, count - left);
   }
 
   /// Faces in bins below the result go left.
   template <class BinOf>
-  static int best_border(const std::vector<Box>& boxes, const std::vector<std::uint32_t>& order,
-                         std::uint32_t first, std::uint32_t count, BinOf bin_of) {
+  [[nodiscard]] int best_border(std::uint32_t first, std::uint32_t count, BinOf bin_of) const {
     std::array<Box, bins> box;
     std::array<std::uint32_t, bins> number = {};
     for (std::uint32_t i = first; i < first + count; ++i) {
@@ -246,9 +246,9 @@ SurfacePoint SurfaceQuery::nearest(const Vec3& position) const {
     const auto [distance, index] = stack.back();
     stack.pop_back();
     if (distance > best_distance) continue;
-    const Node& node = tree_->nodes[index];
+    const Node& node = tree_->visit(index);
     for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
-      const FaceId f = tree_->faces[i];
+      const FaceId f(tree_->order[i]);
       const auto corners = mesh_->corners(f);
       const auto weights = nearest_in_triangle(corners, position);
       const Vec3 point = weights[0] * corners[0] + weights[1] * corners[1] + weights[2] * corners[2];
@@ -280,9 +280,9 @@ std::optional<SurfacePoint> SurfaceQuery::first_hit(const Vec3& origin, const Ve
     const auto [t, index] = stack.back();
     stack.pop_back();
     if (t > best_t || std::isinf(t)) continue;
-    const Node& node = tree_->nodes[index];
+    const Node& node = tree_->visit(index);
     for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
-      const FaceId f = tree_->faces[i];
+      const FaceId f(tree_->order[i]);
       const auto hit = intersect(ray, mesh_->corners(f));
       if (hit && (hit->t < best_t || (hit->t == best_t && f.value < best.face.value))) {
         best_t = hit->t;

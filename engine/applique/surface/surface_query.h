@@ -7,8 +7,9 @@
 
 namespace applique {
 
-/// Nearest-point and ray queries on a surface: a bounding-volume hierarchy over its faces, built once.
-/// The mesh must outlive it.
+/// Nearest-point and ray queries on a surface: a bounding-volume hierarchy over its faces, of which each
+/// query builds what it comes by: O(n) for the first, O(log n) for one near an earlier one. Not for several
+/// threads at once. The mesh must outlive it.
 class SurfaceQuery {
  public:
   explicit SurfaceQuery(const SurfaceMesh& mesh);

@@ -25,25 +25,35 @@ struct AxisCopy {
   std::int64_t shift;  // Texels.
 };
 
-// The copies by which [lower, upper] is seen in [first, last), all in texels, in the order of the plane.
-std::vector<AxisCopy> axis_copies(WrapMode mode, int size, double lower, double upper, int first, int last) {
-  if (mode == WrapMode::clamp) return {{1, 0}};
-  std::vector<AxisCopy> copies;
-  if (mode == WrapMode::repeat) {
-    const double low = std::floor((first - upper) / size), high = std::ceil((last - lower) / size);
-    if (high - low > max_periods) return {};
-    for (auto k = static_cast<std::int64_t>(high); k >= static_cast<std::int64_t>(low); --k) {
-      copies.push_back({1, k * size});
-    }
-  } else {
-    const double low = std::floor(lower / size), high = std::floor(upper / size);
-    if (high - low > max_periods) return {};
-    for (auto k = static_cast<std::int64_t>(low); k <= static_cast<std::int64_t>(high); ++k) {
-      copies.push_back(k % 2 == 0 ? AxisCopy{1, -k * size} : AxisCopy{-1, (k + 1) * size});
+// The copies by which [lower, upper] is seen in [first, last), all in texels: a range of periods.
+struct AxisCopies {
+  WrapMode mode;
+  int size;
+  std::int64_t low = 0, high = 0;  // low > high: none.
+
+  AxisCopies(WrapMode wrap, int period, double lower, double upper, int first, int last)
+      : mode(wrap), size(period) {
+    if (mode == WrapMode::clamp) return;
+    const double from =
+        mode == WrapMode::repeat ? std::floor((first - upper) / size) : std::floor(lower / size);
+    const double to = mode == WrapMode::repeat ? std::ceil((last - lower) / size) : std::floor(upper / size);
+    const bool few = to - from <= max_periods;
+    low = few ? static_cast<std::int64_t>(from) : 1;
+    high = few ? static_cast<std::int64_t>(to) : 0;
+  }
+
+  // Calls `visit(copy)` for each, in the order of the plane.
+  template <class Visit>
+  void each(Visit visit) const {
+    for (std::int64_t i = low; i <= high; ++i) {
+      const std::int64_t k = mode == WrapMode::repeat ? high - (i - low) : i;
+      if (mode == WrapMode::mirror && k % 2 != 0)
+        visit(AxisCopy{-1, (k + 1) * size});
+      else
+        visit(AxisCopy{1, mode == WrapMode::mirror ? -k * size : k * size});
     }
   }
-  return copies;
-}
+};
 
 struct Bounds {
   double lower[2], upper[2];
@@ -67,23 +77,23 @@ void for_each_copy(const Transfer& transfer, const std::array<Texel, 3>& corners
                    const TexelRect& window, Visit visit) {
   const std::optional<Bounds> bounds = bounds_of(corners);
   if (!bounds) return;
-  const auto copies_x = axis_copies(transfer.wrap_u, width, bounds->lower[0], bounds->upper[0], window.x,
-                                    window.x + window.width);
-  const auto copies_y = axis_copies(transfer.wrap_v, height, bounds->lower[1], bounds->upper[1], window.y,
-                                    window.y + window.height);
-  for (const AxisCopy& y : copies_y) {
+  const AxisCopies copies_x(transfer.wrap_u, width, bounds->lower[0], bounds->upper[0], window.x,
+                            window.x + window.width);
+  const AxisCopies copies_y(transfer.wrap_v, height, bounds->lower[1], bounds->upper[1], window.y,
+                            window.y + window.height);
+  copies_y.each([&](const AxisCopy& y) {
     const double y0 =
         y.sign * (y.sign > 0 ? bounds->lower[1] : bounds->upper[1]) + static_cast<double>(y.shift);
     const double y1 = y0 + bounds->upper[1] - bounds->lower[1];
-    if (y1 < window.y || y0 > window.y + window.height) continue;
-    for (const AxisCopy& x : copies_x) {
+    if (y1 < window.y || y0 > window.y + window.height) return;
+    copies_x.each([&](const AxisCopy& x) {
       const double x0 =
           x.sign * (x.sign > 0 ? bounds->lower[0] : bounds->upper[0]) + static_cast<double>(x.shift);
       const double x1 = x0 + bounds->upper[0] - bounds->lower[0];
-      if (x1 < window.x || x0 > window.x + window.width) continue;
+      if (x1 < window.x || x0 > window.x + window.width) return;
       visit(x, y, Bounds{{x0, y0}, {x1, y1}});
-    }
-  }
+    });
+  });
 }
 
 FixedCorners fixed_corners(const std::array<Texel, 3>& corners, const AxisCopy& x, const AxisCopy& y) {
