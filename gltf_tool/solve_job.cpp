@@ -73,13 +73,6 @@ Result<T> of_decal(const DecalJob& decal, Result<T> result) {
   return fail(result.error().code, fmt::format("decal '{}': {}", decal.name, result.error().message));
 }
 
-bool has_transparency(const Image& image) {
-  if (!image.has_alpha()) return false;
-  for (std::size_t i = 3; i < image.rgba.size(); i += 4)
-    if (image.rgba[i] != 0xffff) return true;
-  return false;
-}
-
 Result<std::vector<Pixel>> find_contour(const RegionChoice& choice, const Image& image) {
   constexpr double default_threshold = 0.5;
   if (const auto* contour = std::get_if<ContourRegion>(&choice)) return contour->contour;

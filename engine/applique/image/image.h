@@ -32,8 +32,12 @@ struct Image {
 /// An image of one colour (16-bit RGBA), 4 channels of 8 bits.
 Image make_image(int width, int height, std::array<std::uint16_t, 4> colour);
 
-/// Reads any format that OpenImageIO knows (PNG with palettes, JPEG, WebP, TIFF, …). Floating-point images
-/// are turned down. Errors: file_unreadable, image_invalid (with OpenImageIO's reason).
+/// Whether some pixel is not opaque.
+bool has_transparency(const Image& image);
+
+/// Reads WebP and any format that OpenImageIO knows (PNG with palettes, JPEG, TIFF, OpenEXR, Radiance HDR,
+/// …). Floating-point values are taken as image_of_floats says (float_image.h). Errors: file_unreadable,
+/// image_invalid (with the decoder's reason).
 Result<Image> read_image(const std::filesystem::path& path);
 
 /// The same from bytes in memory; `name` stands for the file in errors.
@@ -41,5 +45,18 @@ Result<Image> decode_image(std::span<const std::uint8_t> bytes, const std::strin
 
 /// PNG bytes with the image's own channels and bits.
 Result<std::vector<std::uint8_t>> encode_png(const Image& image);
+
+/// JPEG bytes, without alpha, colours at full resolution; `quality` from 1 to 100. Errors: output_unwritable.
+Result<std::vector<std::uint8_t>> encode_jpeg(const Image& image, int quality);
+
+/// WebP bytes, with the colours under transparency; `quality` from 1 to 100, which is lossless. Errors:
+/// output_unwritable, for a side of more than webp_largest_side too.
+Result<std::vector<std::uint8_t>> encode_webp(const Image& image, int quality);
+inline constexpr int webp_largest_side = 16383;
+
+/// The nearest of 8 bits to a channel's 16; exact for what came from 8.
+inline std::uint8_t to_8_bits(std::uint16_t value) {
+  return static_cast<std::uint8_t>((value + 128U) / 257U);
+}
 
 }  // namespace applique
