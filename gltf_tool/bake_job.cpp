@@ -30,7 +30,7 @@ std::string material_name(const Document& document, std::size_t material) {
 }
 
 Result<std::vector<TargetWork>> prepare(const SolvedJob& job, const Document& document,
-                                        std::vector<BakeTarget> targets) {
+                                        std::vector<BakeTarget> targets, const TextureEncoding& encoding) {
   std::vector<std::future<Result<Image>>> textures;
   textures.reserve(targets.size());
   for (const BakeTarget& target : targets)
@@ -40,6 +40,7 @@ Result<std::vector<TargetWork>> prepare(const SolvedJob& job, const Document& do
   for (std::size_t i = 0; i < targets.size(); ++i) {
     TargetWork work;
     APPLIQUE_TRY(work.texture, textures[i].get());
+    work.texture.bits = working_bits(encoding, work.texture.bits);
     work.report.material = material_name(document, targets[i].isolated);
     work.report.width = work.texture.width;
     work.report.height = work.texture.height;
@@ -139,19 +140,30 @@ Result<void> transfer_all(SolvedJob& job, std::vector<TargetWork>& works, GpuBak
   return {};
 }
 
-Result<void> store_textures(const std::vector<TargetWork>& works, Document& document) {
-  std::vector<std::future<Result<std::vector<std::uint8_t>>>> encoded;
-  encoded.reserve(works.size());
+/// Tells that a texture is not stored in the wanted format.
+void warn_of_format(BakedJob& baked, const std::string& texture, const EncodedTexture& encoded) {
+  if (encoded.why_png.empty()) return;
+  baked.warnings.push_back({"texture_is_png", fmt::format("the texture of '{}' is stored as a PNG: {}",
+                                                          texture, encoded.why_png)});
+}
+
+Result<void> store_textures(std::vector<TargetWork>& works, const TextureEncoding& encoding,
+                            BakedJob& baked) {
+  std::vector<std::future<Result<EncodedTexture>>> textures;
+  textures.reserve(works.size());
   for (const TargetWork& work : works)
-    encoded.push_back(std::async(std::launch::async, [&work] { return encode_png(work.texture); }));
+    textures.push_back(
+        std::async(std::launch::async, [&] { return encode_texture(work.texture, encoding); }));
   for (std::size_t i = 0; i < works.size(); ++i) {
-    APPLIQUE_TRY(const auto png, encoded[i].get());
-    set_base_colour_image(document, works[i].target.isolated, png);
+    APPLIQUE_TRY(const EncodedTexture encoded, textures[i].get());
+    set_base_colour_image(baked.document, works[i].target.isolated, encoded.bytes);
+    works[i].report.format = name_of(encoded.format);
+    warn_of_format(baked, works[i].report.material, encoded);
   }
   return {};
 }
 
-Result<void> add_overlays(SolvedJob& job, Document& document) {
+Result<void> add_overlays(SolvedJob& job, const TextureEncoding& encoding, BakedJob& baked) {
   for (SolvedDecal& decal : job.decals) {
     if (decal.job.output != DecalOutput::overlay) continue;
     const Stopwatch watch;
@@ -160,8 +172,9 @@ Result<void> add_overlays(SolvedJob& job, Document& document) {
     if (mesh.triangles.empty())
       return fail(ErrorCode::not_solved,
                   fmt::format("decal '{}': none of the image lies on the surface", decal.job.name));
-    APPLIQUE_TRY(const auto png, encode_png(overlay_image(decal)));
-    add_overlay(document, decal.job.name, mesh, png);
+    APPLIQUE_TRY(const EncodedTexture encoded, encode_texture(overlay_image(decal), encoding));
+    add_overlay(baked.document, decal.job.name, mesh, encoded.bytes);
+    warn_of_format(baked, decal.job.name, encoded);
     decal.times.add("overlay", watch.seconds());
     warn_of_motion(decal, job);
   }
@@ -176,7 +189,8 @@ Result<std::unique_ptr<GpuBaker>> create_baker(Device device) {
   return baker;
 }
 
-Result<BakedJob> bake_job(SolvedJob& job, GpuBaker& baker, const StageCallback& on_stage) {
+Result<BakedJob> bake_job(SolvedJob& job, GpuBaker& baker, const StageCallback& on_stage,
+                          const TextureEncoding& encoding) {
   BakedJob baked;
   baked.document = job.model.document;
   Stopwatch watch;
@@ -185,14 +199,14 @@ Result<BakedJob> bake_job(SolvedJob& job, GpuBaker& baker, const StageCallback& 
   };
   show("preparing the textures", 0);
   APPLIQUE_TRY(auto targets, plan_bake(job, baked.document));
-  APPLIQUE_TRY(auto works, prepare(job, baked.document, std::move(targets)));
+  APPLIQUE_TRY(auto works, prepare(job, baked.document, std::move(targets), encoding));
   baked.times.add("load_textures", watch.lap());
   APPLIQUE_CHECK(transfer_all(job, works, baker, baked, show));
   baked.times.add("transfer", watch.lap());
   show("encoding the textures", transferred);
-  APPLIQUE_CHECK(store_textures(works, baked.document));
+  APPLIQUE_CHECK(store_textures(works, encoding, baked));
   baked.times.add("encode_textures", watch.lap());
-  APPLIQUE_CHECK(add_overlays(job, baked.document));
+  APPLIQUE_CHECK(add_overlays(job, encoding, baked));
   baked.times.add("overlay", watch.lap());
   for (const TargetWork& work : works) baked.textures.push_back(work.report);
   return baked;

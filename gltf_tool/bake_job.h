@@ -11,6 +11,7 @@
 #include "document.h"
 #include "report.h"
 #include "solve_job.h"
+#include "texture_encoding.h"
 
 namespace applique {
 
@@ -28,12 +29,14 @@ struct BakedJob {  // NOLINT(bugprone-exception-escape): so is Document
   Document document;
   std::vector<TextureReport> textures;
   std::vector<std::optional<TexelDensity>> densities;  ///< By decal; none for overlays.
+  std::vector<Warning> warnings;                       ///< Of the textures: texture_is_png.
   StageTimes times;
 };
 
 /// Puts the decals on the model: bakes each into the base-colour textures under it, or adds it as an overlay.
 /// Adds warnings to the decals: uv_overlap, base_color_factor_tints, low_texel_density, overlay_static.
-/// Errors: uvs_missing, device_failed, and those of load_model_image.
-Result<BakedJob> bake_job(SolvedJob& job, GpuBaker& baker, const StageCallback& on_stage = {});
+/// Errors: uvs_missing, device_failed, and those of load_model_image and encode_texture.
+Result<BakedJob> bake_job(SolvedJob& job, GpuBaker& baker, const StageCallback& on_stage = {},
+                          const TextureEncoding& encoding = {});
 
 }  // namespace applique

@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "binary_edit.h"
+#include "media_type.h"
 
 namespace applique {
 namespace {
@@ -138,17 +139,17 @@ void remove_image(Document& document, std::size_t image) {
 }
 
 /// Replaces an image's bytes and keeps its other members.
-void replace_image(Document& document, std::size_t image, std::span<const std::uint8_t> png) {
+void replace_image(Document& document, std::size_t image, std::span<const std::uint8_t> bytes) {
   auto& entry = document.json["images"][image];
   const auto view = index_of(entry, "bufferView");
   if (view && count_view_uses(document, *view) == 1) {
-    replace_buffer_view(document, *view, png);
-    document.json["images"][image]["mimeType"] = "image/png";
+    replace_buffer_view(document, *view, bytes);
+    document.json["images"][image]["mimeType"] = media_type_of(bytes);
     return;
   }
   const auto* name = find(entry, {"name"});
   const std::size_t added = add_image(
-      document, png, name != nullptr && name->is_string() ? name->get<std::string>() : "base_colour");
+      document, bytes, name != nullptr && name->is_string() ? name->get<std::string>() : "base_colour");
   auto& images = document.json["images"];
   Json replacement = std::move(images[added]);
   images.erase(added);
@@ -159,27 +160,29 @@ void replace_image(Document& document, std::size_t image, std::span<const std::u
   images[image] = std::move(replacement);
 }
 
-/// The texture's only source becomes `png`: in place of an image that it alone uses, else as a new image.
-void set_texture_image(Document& document, std::size_t texture, std::span<const std::uint8_t> png) {
+/// Puts a name on one of the document's lists of extensions.
+void declare(Document& document, const char* list, const char* extension) {
+  auto& names = document.json[list];
+  if (std::find(names.begin(), names.end(), extension) == names.end()) names.push_back(extension);
+}
+
+/// The texture's only source becomes an image of these bytes: in place of an image that it alone uses, else a
+/// new one.
+void set_texture_image(Document& document, std::size_t texture, std::span<const std::uint8_t> bytes) {
   std::vector<std::size_t> own;
   auto& entry = document.json["textures"][texture];
   each_source(entry, [&](const Json& object) {
     const std::size_t image = object["source"].get<std::size_t>();
     if (std::find(own.begin(), own.end(), image) == own.end()) own.push_back(image);
   });
-  if (entry.contains("extensions")) {
-    for (const char* extension : source_extensions) entry["extensions"].erase(extension);
-    if (entry["extensions"].empty()) entry.erase("extensions");
-  }
   std::erase_if(own, [&](std::size_t image) { return is_shown_elsewhere(document, image, texture); });
   std::sort(own.begin(), own.end());
   if (own.empty()) {
-    const std::size_t image = add_image(document, png, "base_colour");
-    document.json["textures"][texture]["source"] = image;
+    show_image(document, texture, add_image(document, bytes, "base_colour"));
     return;
   }
-  replace_image(document, own.front(), png);
-  document.json["textures"][texture]["source"] = own.front();
+  replace_image(document, own.front(), bytes);
+  show_image(document, texture, own.front());
   for (std::size_t i = own.size(); i-- > 1;) remove_image(document, own[i]);
 }
 
@@ -222,25 +225,43 @@ std::vector<std::size_t> isolate_materials(Document& document, std::span<const P
   return result;
 }
 
-std::size_t add_image(Document& document, std::span<const std::uint8_t> png, const std::string& name) {
-  Json image = {{"mimeType", "image/png"}, {"name", name}};
+std::size_t add_image(Document& document, std::span<const std::uint8_t> bytes, const std::string& name) {
+  const std::string media_type = media_type_of(bytes);
+  Json image = {{"mimeType", media_type}, {"name", name}};
   if (document.is_glb) {
-    image["bufferView"] = add_buffer_view(document, png);
+    image["bufferView"] = add_buffer_view(document, bytes);
   } else {
     std::string stem = name.empty() ? "image" : name;
     for (char& c : stem)
       if (std::string_view("/\\:*?\"<>|%").find(c) != std::string_view::npos) c = '_';
-    std::string uri = stem + ".png";
-    for (int i = 2; document.new_files.contains(uri); ++i) uri = fmt::format("{}_{}.png", stem, i);
+    const std::string extension = extension_of(media_type);
+    std::string uri = stem + extension;
+    for (int i = 2; document.new_files.contains(uri); ++i) uri = fmt::format("{}_{}{}", stem, i, extension);
     image["uri"] = uri;
-    document.new_files[uri].assign(png.begin(), png.end());
+    document.new_files[uri].assign(bytes.begin(), bytes.end());
   }
   auto& images = document.json["images"];
   images.push_back(std::move(image));
   return images.size() - 1;
 }
 
-void set_base_colour_image(Document& document, std::size_t material, std::span<const std::uint8_t> png) {
+void show_image(Document& document, std::size_t texture, std::size_t image) {
+  auto& entry = document.json["textures"][texture];
+  entry.erase("source");
+  if (entry.contains("extensions"))
+    for (const char* extension : source_extensions) entry["extensions"].erase(extension);
+  const auto* media_type = find(document.json["images"][image], {"mimeType"});
+  if (media_type != nullptr && *media_type == "image/webp") {
+    entry["extensions"]["EXT_texture_webp"]["source"] = image;
+    declare(document, "extensionsUsed", "EXT_texture_webp");
+    declare(document, "extensionsRequired", "EXT_texture_webp");
+  } else {
+    entry["source"] = image;
+  }
+  if (entry.contains("extensions") && entry["extensions"].empty()) entry.erase("extensions");
+}
+
+void set_base_colour_image(Document& document, std::size_t material, std::span<const std::uint8_t> bytes) {
   auto& textures = document.json["textures"];
   auto& pbr = document.json["materials"][material]["pbrMetallicRoughness"];
   if (!pbr.contains("baseColorTexture")) {
@@ -257,7 +278,7 @@ void set_base_colour_image(Document& document, std::size_t material, std::span<c
     textures.push_back(std::move(copy));
     pbr["baseColorTexture"]["index"] = texture;
   }
-  set_texture_image(document, texture, png);
+  set_texture_image(document, texture, bytes);
 }
 
 }  // namespace applique

@@ -23,15 +23,19 @@ struct PartKey {
 /// coincide. The document must have passed check_document; the parts are distinct and exist.
 std::vector<std::size_t> isolate_materials(Document& document, std::span<const PartKey> parts);
 
-/// Shows an image (PNG bytes) as the base colour of an isolated material. The texture is copied first when
-/// other materials or slots use it; its sampler, and the material's texture coordinates, stay. A material
-/// without a base-colour texture gets one over TEXCOORD_0. Where there was no image before, baseColorFactor
-/// becomes 1, so the image must have it in its colours. The replaced image's bytes go where nothing else uses
-/// them.
-void set_base_colour_image(Document& document, std::size_t material, std::span<const std::uint8_t> png);
+/// Shows an image (bytes of a PNG, JPEG or WebP) as the base colour of an isolated material. The texture is
+/// copied first when other materials or slots use it; its sampler, and the material's texture coordinates,
+/// stay. A material without a base-colour texture gets one over TEXCOORD_0. Where there was no image before,
+/// baseColorFactor becomes 1, so the image must have it in its colours. The replaced image's bytes go where
+/// nothing else uses them. A WebP is shown by EXT_texture_webp, which the document then requires: a second
+/// image beside it would cost more than it saves.
+void set_base_colour_image(Document& document, std::size_t material, std::span<const std::uint8_t> bytes);
 
-/// Adds an image of PNG bytes: in the chunk of a GLB, else as a new file named after `name`. Returns its
-/// index.
-std::size_t add_image(Document& document, std::span<const std::uint8_t> png, const std::string& name);
+/// Adds an image of PNG, JPEG or WebP bytes: in the chunk of a GLB, else as a new file named after `name`.
+/// Returns its index.
+std::size_t add_image(Document& document, std::span<const std::uint8_t> bytes, const std::string& name);
+
+/// Makes an image the only one that a texture shows, by the extension that its kind needs.
+void show_image(Document& document, std::size_t texture, std::size_t image);
 
 }  // namespace applique

@@ -69,11 +69,13 @@ std::size_t add_indices(Document& document, const OverlayMesh& overlay) {
                  {"type", "SCALAR"}});
 }
 
-std::size_t add_material(Document& document, const std::string& name, std::span<const std::uint8_t> png) {
-  const std::size_t image = add_image(document, png, name);
+std::size_t add_material(Document& document, const std::string& name,
+                         std::span<const std::uint8_t> image_bytes) {
+  const std::size_t image = add_image(document, image_bytes, name);
   const std::size_t sampler = add_to(
       document, "samplers", {{"magFilter", 9729}, {"minFilter", 9987}, {"wrapS", 33071}, {"wrapT", 33071}});
-  const std::size_t texture = add_to(document, "textures", {{"sampler", sampler}, {"source", image}});
+  const std::size_t texture = add_to(document, "textures", {{"sampler", sampler}});
+  show_image(document, texture, image);
   Json pbr = {{"baseColorTexture", {{"index", texture}}}, {"metallicFactor", 0.0}, {"roughnessFactor", 1.0}};
   return add_to(document, "materials",
                 {{"name", name},
@@ -85,13 +87,13 @@ std::size_t add_material(Document& document, const std::string& name, std::span<
 }  // namespace
 
 std::size_t add_overlay(Document& document, const std::string& decal, const OverlayMesh& overlay,
-                        std::span<const std::uint8_t> png) {
+                        std::span<const std::uint8_t> image_bytes) {
   const Json extras = {{"applique", {{"decal", decal}}}};
   Json attributes = {{"POSITION", add_attribute<3>(document, overlay.positions, true)}};
   attributes["NORMAL"] = add_attribute<3>(document, overlay.normals, false);
   attributes["TEXCOORD_0"] = add_attribute<2>(document, overlay.uvs, false);
   Json primitive = {{"attributes", std::move(attributes)}, {"indices", add_indices(document, overlay)}};
-  primitive["material"] = add_material(document, decal, png);
+  primitive["material"] = add_material(document, decal, image_bytes);
   primitive["mode"] = 4;
   const std::size_t mesh =
       add_to(document, "meshes",

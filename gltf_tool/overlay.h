@@ -22,9 +22,9 @@ struct OverlayMesh {
 };
 
 /// Adds an overlay to the default scene: a mesh and a node named after the decal, with
-/// `extras.applique.decal`, and a material that shows the image (PNG bytes) with alpha blending. Returns the
-/// node's index.
+/// `extras.applique.decal`, and a material that shows the image (bytes of a PNG, JPEG or WebP) with alpha
+/// blending. Returns the node's index.
 std::size_t add_overlay(Document& document, const std::string& decal, const OverlayMesh& overlay,
-                        std::span<const std::uint8_t> png);
+                        std::span<const std::uint8_t> image_bytes);
 
 }  // namespace applique

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cctype>
-#include <cstring>
 #include <limits>
 #include <map>
 #include <set>
@@ -11,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "binary_edit.h"
+#include "media_type.h"
 #include "output_file.h"
 #include "uri.h"
 
@@ -32,18 +32,11 @@ bool declares(const Document& document, const char* extension) {
 }
 
 /// The media type of an image that the document may embed, by its first bytes; "" for another.
-std::string media_type(const Document& document, std::span<const std::uint8_t> bytes) {
-  const auto starts_with = [&](std::string_view magic, std::size_t at = 0) {
-    return bytes.size() >= at + magic.size() &&
-           std::memcmp(bytes.data() + at, magic.data(), magic.size()) == 0;
-  };
-  if (starts_with("\x89PNG\r\n\x1a\n")) return "image/png";
-  if (starts_with("\xff\xd8\xff")) return "image/jpeg";
-  if (starts_with("RIFF") && starts_with("WEBP", 8) && declares(document, "EXT_texture_webp"))
-    return "image/webp";
-  if (starts_with("\xabKTX 20\xbb\r\n\x1a\n") && declares(document, "KHR_texture_basisu"))
-    return "image/ktx2";
-  return "";
+std::string embeddable_type(const Document& document, std::span<const std::uint8_t> bytes) {
+  const std::string type = media_type_of(bytes);
+  if (type == "image/webp" && !declares(document, "EXT_texture_webp")) return "";
+  if (type == "image/ktx2" && !declares(document, "KHR_texture_basisu")) return "";
+  return type;
 }
 
 void put_u32(std::vector<std::uint8_t>& out, std::size_t value) {
@@ -123,7 +116,7 @@ void pack_images(Document& document) {
     const auto* uri = find(document.json["images"][i], {"uri"});
     if (uri == nullptr) continue;
     const auto bytes = read_uri(document, uri->get<std::string>(), "image");
-    const std::string type = bytes ? media_type(document, *bytes) : "";
+    const std::string type = bytes ? embeddable_type(document, *bytes) : "";
     if (type.empty()) continue;
     const std::size_t view = add_buffer_view(document, *bytes);
     auto& image = document.json["images"][i];

@@ -1,9 +1,12 @@
 #include "commands/bake.h"
 
 #include <future>
+#include <map>
 #include <memory>
+#include <set>
 #include <utility>
 
+#include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
 #include "bake_job.h"
@@ -34,6 +37,38 @@ Result<void> write_preview(const std::filesystem::path& path, Device& device, co
   return write_file(path, png);
 }
 
+/// How the textures are stored. Options that do not go together are wrong usage.
+void add_texture_options(CLI::App& command, TextureEncoding& textures) {
+  static const std::map<std::string, TextureFormat> formats = {
+      {"png", TextureFormat::png}, {"jpeg", TextureFormat::jpeg}, {"webp", TextureFormat::webp}};
+  command
+      .add_option_function<std::string>(
+          "--texture-format", [&textures](const std::string& name) { textures.format = formats.at(name); },
+          "How textures are stored: png (default), jpeg or webp; a texture with transparency stays a PNG "
+          "instead of a JPEG")
+      ->check(CLI::IsMember(formats).description(""))
+      ->option_text("FORMAT");
+  const auto* quality = command
+                            .add_option("--texture-quality", textures.quality,
+                                        "Of JPEG and WebP, 1 to 100 (default 90); 100 makes WebP lossless")
+                            ->check(CLI::Range(1, 100).description(""))
+                            ->option_text("QUALITY");
+  const auto* bits =
+      command
+          .add_option("--texture-bits", textures.bits,
+                      "Of PNG, bits a channel, 8 or 16 (default: as the texture had, 8 for new ones)")
+          ->check(CLI::IsMember(std::set<int>{8, 16}).description(""))
+          ->option_text("BITS");
+  command.parse_complete_callback([quality, bits, &textures] {
+    if (quality->count() != 0 && textures.format == TextureFormat::png)
+      throw CLI::ValidationError("--texture-quality",
+                                 "PNG has no quality; name jpeg or webp by --texture-format");
+    if (bits->count() != 0 && *textures.bits == 16 && textures.format != TextureFormat::png)
+      throw CLI::ValidationError("--texture-bits", fmt::format("{} has 8 bits; 16 need --texture-format png",
+                                                               name_of(textures.format)));
+  });
+}
+
 }  // namespace
 
 CLI::App* add_bake_command(CLI::App& app, BakeArguments& arguments) {
@@ -41,7 +76,8 @@ CLI::App* add_bake_command(CLI::App& app, BakeArguments& arguments) {
       add_subcommand(app, "bake", "Solve a job and write the model with its decals",
                      "  applique bake job.json -o out.glb\n"
                      "  applique bake job.json -o out.glb --preview preview.png --report report.json\n"
-                     "  applique bake job.json -o out.gltf --device llvmpipe --verbose");
+                     "  applique bake job.json -o out.gltf --device llvmpipe --verbose\n"
+                     "  applique bake job.json -o out.glb --texture-format webp --texture-quality 80");
   command->add_option("JOB", arguments.job, "The job file")->required();
   command->add_option("-o,--output", arguments.output, "The model to write, .glb or .gltf")
       ->required()
@@ -50,6 +86,7 @@ CLI::App* add_bake_command(CLI::App& app, BakeArguments& arguments) {
   command->add_option("--preview", arguments.preview, "Write a picture that frames the first decal (PNG)")
       ->check(picture_extension);
   command->add_option("--device", arguments.device, "The Vulkan device, by index or by a part of its name");
+  add_texture_options(*command, arguments.textures);
   return command;
 }
 
@@ -92,7 +129,8 @@ Result<void> run_bake(const BakeArguments& arguments, const CommonArguments& com
   input.times.add("wait_for_device", watch.lap());
   spdlog::debug("Vulkan device: {}", baker->device.name());
 
-  APPLIQUE_TRY(BakedJob baked, bake_job(solved, *baker, show_stages(*progress, solve_share, bake_share)));
+  APPLIQUE_TRY(BakedJob baked,
+               bake_job(solved, *baker, show_stages(*progress, solve_share, bake_share), arguments.textures));
   for (const auto& [stage, seconds] : baked.times.stages()) input.times.add(stage, seconds);
   watch.lap();
   show_stages(*progress, solve_share + bake_share, 0)("saving", 0);
@@ -109,9 +147,11 @@ Result<void> run_bake(const BakeArguments& arguments, const CommonArguments& com
   if (arguments.preview) input.preview_output = arguments.preview->string();
   input.textures = std::move(baked.textures);
   input.densities = std::move(baked.densities);
+  input.warnings = std::move(baked.warnings);
   input.total_seconds = total.seconds();
   if (arguments.report) APPLIQUE_CHECK(write_json(*arguments.report, make_report(solved, input)));
   log_warnings(solved);
+  for (const Warning& warning : input.warnings) spdlog::warn("{}", warning.message);
   log_decals(solved);
   for (const auto& [stage, seconds] : input.times.stages()) spdlog::debug("{}: {:.3f} s", stage, seconds);
   spdlog::info("{} written in {:.2f} s", arguments.output.string(), total.seconds());

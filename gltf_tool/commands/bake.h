@@ -9,6 +9,7 @@
 #include "applique/base/error.h"
 
 #include "commands/common.h"
+#include "texture_encoding.h"
 
 namespace applique {
 
@@ -18,6 +19,7 @@ struct BakeArguments {
   std::optional<std::filesystem::path> report;   ///< JSON, report.schema.json.
   std::optional<std::filesystem::path> preview;  ///< PNG.
   std::string device;                            ///< Index or part of a name; empty: the best one.
+  TextureEncoding textures;
 };
 
 CLI::App* add_bake_command(CLI::App& app, BakeArguments& arguments);
