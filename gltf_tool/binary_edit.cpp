@@ -75,6 +75,15 @@ void erase_unused(Document& document, std::size_t begin, std::size_t end) {
   length = length.get<std::size_t>() - removed;
 }
 
+/// Takes one from every reference to a buffer view after `view`.
+void renumber_views(Json& json, std::size_t view) {
+  if (json.is_object())
+    if (const auto other = index_of(json, "bufferView"); other && *other > view)
+      json["bufferView"] = *other - 1;
+  if (json.is_structured())
+    for (auto& member : json) renumber_views(member, view);
+}
+
 }  // namespace
 
 std::size_t add_buffer_view(Document& document, std::span<const std::uint8_t> bytes,
@@ -95,6 +104,15 @@ void replace_buffer_view(Document& document, std::size_t view, std::span<const s
   entry["byteOffset"] = offset;
   entry["byteLength"] = bytes.size();
   if (old["buffer"].get<std::size_t>() != buffer) return;
+  const std::size_t first = index_of(old, "byteOffset").value_or(0);
+  erase_unused(document, first, first + old["byteLength"].get<std::size_t>());
+}
+
+void remove_buffer_view(Document& document, std::size_t view) {
+  const Json old = document.json["bufferViews"][view];
+  document.json["bufferViews"].erase(view);
+  renumber_views(document.json, view);
+  if (!document.chunk_buffer || old["buffer"].get<std::size_t>() != *document.chunk_buffer) return;
   const std::size_t first = index_of(old, "byteOffset").value_or(0);
   erase_unused(document, first, first + old["byteLength"].get<std::size_t>());
 }

@@ -17,4 +17,8 @@ std::size_t add_buffer_view(Document& document, std::span<const std::uint8_t> by
 /// that is safe (they are in the chunk, no other view overlaps them, and only buffer views refer to buffers).
 void replace_buffer_view(Document& document, std::size_t view, std::span<const std::uint8_t> bytes);
 
+/// Takes a buffer view out of the list, as replace_buffer_view does its bytes. Nothing may refer to it any
+/// more; other views are renumbered under every key "bufferView".
+void remove_buffer_view(Document& document, std::size_t view);
+
 }  // namespace applique

@@ -85,6 +85,15 @@ Result<Document> parse_glb(std::span<const std::uint8_t> bytes, const std::strin
   return document;
 }
 
+/// The file behind a relative URI. Some writers leave '%' unencoded: the name as it stands is the second try.
+std::filesystem::path path_of(const Document& document, const std::string& uri) {
+  std::filesystem::path path = document.folder / percent_decode(uri);
+  std::error_code error;
+  if (!std::filesystem::exists(path, error) && std::filesystem::exists(document.folder / uri, error))
+    path = document.folder / uri;
+  return path;
+}
+
 }  // namespace
 
 Result<std::vector<std::uint8_t>> read_file(const std::filesystem::path& path) {
@@ -171,14 +180,20 @@ Result<std::vector<std::uint8_t>> read_uri(const Document& document, const std::
         ErrorCode::model_unsupported,
         fmt::format("{}: '{}' is not a relative path; put the file beside the model and name it there", what,
                     uri));
-  // Some writers leave '%' unencoded: the name as it stands is the second try.
-  std::filesystem::path path = document.folder / percent_decode(uri);
-  std::error_code error;
-  if (!std::filesystem::exists(path, error) && std::filesystem::exists(document.folder / uri, error))
-    path = document.folder / uri;
-  auto bytes = read_file(path);
+  auto bytes = read_file(path_of(document, uri));
   if (!bytes) return fail(bytes.error().code, fmt::format("{}: {}", what, bytes.error().message));
   return bytes;
+}
+
+std::vector<std::filesystem::path> files_of(const Document& document) {
+  std::vector<std::filesystem::path> files;
+  for (const char* collection : {"buffers", "images"})
+    for (std::size_t i = 0; i < count_of(document, collection); ++i)
+      if (const auto* uri = find(document.json[collection][i], {"uri"}); uri != nullptr && uri->is_string())
+        if (const auto name = uri->get<std::string>();
+            is_relative_uri(name) && !document.new_files.contains(name))
+          files.push_back(path_of(document, name));
+  return files;
 }
 
 Result<Buffers> read_buffers(const Document& document) {

@@ -67,6 +67,9 @@ Result<Buffers> read_buffers(const Document& document);
 Result<std::vector<std::uint8_t>> read_uri(const Document& document, const std::string& uri,
                                            const std::string& what);
 
+/// The files that a document's buffers and images are read from, by relative URIs.
+std::vector<std::filesystem::path> files_of(const Document& document);
+
 /// The bytes of an image as stored (PNG, JPEG, …). Errors: as read_uri, model_invalid.
 Result<std::vector<std::uint8_t>> read_image_bytes(const Document& document, std::size_t image);
 

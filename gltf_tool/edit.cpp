@@ -225,21 +225,23 @@ std::vector<std::size_t> isolate_materials(Document& document, std::span<const P
   return result;
 }
 
+std::string add_file(Document& document, std::span<const std::uint8_t> bytes, const std::string& name) {
+  std::string stem = name.empty() ? "image" : name;
+  for (char& c : stem)
+    if (std::string_view("/\\:*?\"<>|%").find(c) != std::string_view::npos) c = '_';
+  const std::string extension = extension_of(media_type_of(bytes));
+  std::string uri = stem + extension;
+  for (int i = 2; document.new_files.contains(uri); ++i) uri = fmt::format("{}_{}{}", stem, i, extension);
+  document.new_files[uri].assign(bytes.begin(), bytes.end());
+  return uri;
+}
+
 std::size_t add_image(Document& document, std::span<const std::uint8_t> bytes, const std::string& name) {
-  const std::string media_type = media_type_of(bytes);
-  Json image = {{"mimeType", media_type}, {"name", name}};
-  if (document.is_glb) {
+  Json image = {{"mimeType", media_type_of(bytes)}, {"name", name}};
+  if (document.is_glb)
     image["bufferView"] = add_buffer_view(document, bytes);
-  } else {
-    std::string stem = name.empty() ? "image" : name;
-    for (char& c : stem)
-      if (std::string_view("/\\:*?\"<>|%").find(c) != std::string_view::npos) c = '_';
-    const std::string extension = extension_of(media_type);
-    std::string uri = stem + extension;
-    for (int i = 2; document.new_files.contains(uri); ++i) uri = fmt::format("{}_{}{}", stem, i, extension);
-    image["uri"] = uri;
-    document.new_files[uri].assign(bytes.begin(), bytes.end());
-  }
+  else
+    image["uri"] = add_file(document, bytes, name);
   auto& images = document.json["images"];
   images.push_back(std::move(image));
   return images.size() - 1;
@@ -247,11 +249,11 @@ std::size_t add_image(Document& document, std::span<const std::uint8_t> bytes, c
 
 void show_image(Document& document, std::size_t texture, std::size_t image) {
   auto& entry = document.json["textures"][texture];
-  entry.erase("source");
   if (entry.contains("extensions"))
     for (const char* extension : source_extensions) entry["extensions"].erase(extension);
   const auto* media_type = find(document.json["images"][image], {"mimeType"});
   if (media_type != nullptr && *media_type == "image/webp") {
+    entry.erase("source");
     entry["extensions"]["EXT_texture_webp"]["source"] = image;
     declare(document, "extensionsUsed", "EXT_texture_webp");
     declare(document, "extensionsRequired", "EXT_texture_webp");

@@ -35,6 +35,9 @@ void set_base_colour_image(Document& document, std::size_t material, std::span<c
 /// Returns its index.
 std::size_t add_image(Document& document, std::span<const std::uint8_t> bytes, const std::string& name);
 
+/// Adds a file of the document's own, named after `name`; returns its URI.
+std::string add_file(Document& document, std::span<const std::uint8_t> bytes, const std::string& name);
+
 /// Makes an image the only one that a texture shows, by the extension that its kind needs.
 void show_image(Document& document, std::size_t texture, std::size_t image);
 

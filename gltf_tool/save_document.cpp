@@ -12,6 +12,7 @@
 #include "binary_edit.h"
 #include "media_type.h"
 #include "output_file.h"
+#include "unpack_images.h"
 #include "uri.h"
 
 namespace applique {
@@ -129,11 +130,14 @@ void pack_images(Document& document) {
 /// The files behind relative URIs, which get names that fit the output's folder.
 class SideFiles {
  public:
-  SideFiles(Document& document, const fs::path& path) : document_(document), stem_(path.stem().string()) {
+  SideFiles(Document& document, const fs::path& path, const std::vector<fs::path>& keep)
+      : document_(document),
+        stem_(path.stem().string()),
+        folder_(path.has_parent_path() ? path.parent_path() : ".") {
     std::error_code error;
-    const fs::path folder = path.has_parent_path() ? path.parent_path() : ".";
     const fs::path source = document.folder.empty() ? "." : document.folder;
-    same_folder_ = fs::equivalent(folder, source, error);
+    same_folder_ = fs::equivalent(folder_, source, error);
+    for (const fs::path& file : keep) keep_.insert(fs::weakly_canonical(file, error));
     for (const char* collection : {"buffers", "images"})
       for (std::size_t i = 0; i < count_of(document, collection); ++i)
         if (const auto* uri = find(document.json[collection][i], {"uri"}))
@@ -175,7 +179,7 @@ class SideFiles {
       return {};
     }
     fs::path name = is_new ? fs::path(stem_ + "_" + uri) : fs::path(percent_decode(uri)).lexically_normal();
-    if (is_new || *name.begin() == "..") {
+    if (is_new || *name.begin() == ".." || is_kept(name)) {
       name = free_name(name.stem().string(), name.extension().string());
       renamed->second = percent_encode(name.string());
       entry["uri"] = renamed->second;
@@ -186,14 +190,22 @@ class SideFiles {
 
   std::string free_name(const std::string& stem, const std::string& extension) {
     std::string name = stem + extension;
-    for (int i = 2; used_.contains(percent_encode(name)) || used_.contains(name); ++i)
+    for (int i = 2; used_.contains(percent_encode(name)) || used_.contains(name) || is_kept(name); ++i)
       name = fmt::format("{}_{}{}", stem, i, extension);
     used_.insert(percent_encode(name));
     return name;
   }
 
+  /// Whether a name in the output's folder is that of a file that must stay.
+  [[nodiscard]] bool is_kept(const fs::path& name) const {
+    std::error_code error;
+    return keep_.contains(fs::weakly_canonical(folder_ / name, error));
+  }
+
   Document& document_;
   std::string stem_;
+  fs::path folder_;
+  std::set<fs::path> keep_;
   bool same_folder_ = false;
   std::set<std::string> used_;                  ///< URIs that are taken.
   std::set<std::string> named_;                 ///< URIs that are final.
@@ -216,7 +228,8 @@ Result<void> write_side_files(const std::vector<SideFile>& files, const fs::path
 
 }  // namespace
 
-Result<void> save_document(const Document& document, const fs::path& path) {
+Result<void> save_document(const Document& document, const fs::path& path,
+                           const std::vector<fs::path>& keep) {
   std::string extension = path.extension().string();
   std::transform(extension.begin(), extension.end(), extension.begin(),
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
@@ -231,7 +244,8 @@ Result<void> save_document(const Document& document, const fs::path& path) {
     APPLIQUE_CHECK(pack_buffers(output));
     pack_images(output);
   }
-  SideFiles side_files(output, path);
+  if (!as_glb) unpack_images(output);
+  SideFiles side_files(output, path, keep);
   if (!as_glb && output.chunk_buffer) side_files.name_chunk();
   APPLIQUE_TRY(const auto files, side_files.collect());
   APPLIQUE_CHECK(write_side_files(files, path.parent_path()));

@@ -92,15 +92,25 @@ CLI::App* add_bake_command(CLI::App& app, BakeArguments& arguments) {
 
 namespace {
 
-/// Nothing that the job reads may be written over: a model baked in place would get the decals twice the next
-/// time.
-Result<void> check_outputs(const BakeArguments& arguments, const Job& job) {
+std::vector<std::filesystem::path> inputs_of(const Job& job) {
   std::vector<std::filesystem::path> inputs = {job.path, job.model};
   for (const DecalJob& decal : job.decals) inputs.push_back(decal.image);
+  return inputs;
+}
+
+std::vector<std::filesystem::path> outputs_of(const BakeArguments& arguments) {
   std::vector<std::filesystem::path> outputs = {arguments.output};
   for (const auto& output : {arguments.report, arguments.preview})
     if (output) outputs.push_back(*output);
-  return check_distinct(outputs, inputs);
+  return outputs;
+}
+
+/// What the files of a .gltf must not take the place of.
+std::vector<std::filesystem::path> files_to_keep(const BakeArguments& arguments, const SolvedJob& job) {
+  std::vector<std::filesystem::path> keep = outputs_of(arguments);
+  for (const auto& files : {inputs_of(job.job), files_of(job.model.document)})
+    keep.insert(keep.end(), files.begin(), files.end());
+  return keep;
 }
 
 }  // namespace
@@ -111,7 +121,9 @@ Result<void> run_bake(const BakeArguments& arguments, const CommonArguments& com
   if (arguments.report) APPLIQUE_CHECK(check_writable(*arguments.report));
   if (arguments.preview) APPLIQUE_CHECK(check_writable(*arguments.preview));
   APPLIQUE_TRY(const Job job, load_job(arguments.job));
-  APPLIQUE_CHECK(check_outputs(arguments, job));
+  // Nothing that the job reads may be written over: a model baked in place would get the decals twice the
+  // next time.
+  APPLIQUE_CHECK(check_distinct(outputs_of(arguments), inputs_of(job)));
 
   // A device that is not there is told before the work; the baker's pipelines are made while the geometry is
   // solved.
@@ -134,7 +146,7 @@ Result<void> run_bake(const BakeArguments& arguments, const CommonArguments& com
   for (const auto& [stage, seconds] : baked.times.stages()) input.times.add(stage, seconds);
   watch.lap();
   show_stages(*progress, solve_share + bake_share, 0)("saving", 0);
-  APPLIQUE_CHECK(save_document(baked.document, arguments.output));
+  APPLIQUE_CHECK(save_document(baked.document, arguments.output, files_to_keep(arguments, solved)));
   input.times.add("save", watch.lap());
   if (arguments.preview) {
     APPLIQUE_CHECK(write_preview(*arguments.preview, baker->device, baked.document, solved.decals.front()));
