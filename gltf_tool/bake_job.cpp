@@ -8,6 +8,7 @@
 
 #include "bake_plan.h"
 #include "edit.h"
+#include "instances.h"
 #include "overlay.h"
 #include "overlay_mesh.h"
 
@@ -77,6 +78,16 @@ void warn_of_tint(SolvedDecal& decal, const SolvedJob& job, const TargetWork& wo
            decal.job.name, work.report.material, factor[0], factor[1], factor[2])});
 }
 
+void warn_of_vertex_colours(SolvedDecal& decal, const Model& model) {
+  if (decal.job.output != DecalOutput::bake || !has_vertex_colours(decal, model)) return;
+  decal.warnings.push_back(
+      {"vertex_colors_tint",
+       fmt::format(
+           "decal '{}': the model's vertex colours (COLOR_0) multiply the texture under it, and so the "
+           "decal; make them white there, or the decal \"output\": \"overlay\"",
+           decal.job.name)});
+}
+
 void warn_of_density(SolvedDecal& decal, const std::optional<TexelDensity>& density) {
   constexpr double lowest = 0.5;
   if (!density || density->texels_per_pixel >= lowest) return;
@@ -136,6 +147,7 @@ Result<void> transfer_all(SolvedJob& job, std::vector<TargetWork>& works, GpuBak
   for (std::size_t d = 0; d < job.decals.size(); ++d) {
     baked.densities.push_back(texel_density(job.decals[d], transfers[d]));
     warn_of_density(job.decals[d], baked.densities[d]);
+    warn_of_vertex_colours(job.decals[d], job.model);
   }
   return {};
 }

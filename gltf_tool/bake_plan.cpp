@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "edit.h"
+#include "instances.h"
 
 namespace applique {
 namespace {
@@ -21,16 +22,6 @@ void for_textured_faces(const SolvedDecal& decal, const Visit& visit) {
     const FaceId face = map.patch.faces[f].mesh_face;
     if (map.textured[f] != 0 && face.valid()) visit(f, decal.surface->source(face));
   }
-}
-
-/// The decals on each part that some decal is baked into.
-std::map<std::uint32_t, std::set<std::size_t>> find_touched_parts(const SolvedJob& job) {
-  std::map<std::uint32_t, std::set<std::size_t>> touched;
-  for (std::size_t d = 0; d < job.decals.size(); ++d)
-    if (job.decals[d].job.output == DecalOutput::bake)
-      for_textured_faces(job.decals[d],
-                         [&](PatchFaceId, const auto& source) { touched[source.part].insert(d); });
-  return touched;
 }
 
 Result<void> check_uvs(const SolvedJob& job, std::uint32_t part_index, std::size_t decal) {
@@ -59,18 +50,18 @@ std::uint16_t stored(double value) {
 }  // namespace
 
 Result<std::vector<BakeTarget>> plan_bake(const SolvedJob& job, Document& document) {
-  const auto touched = find_touched_parts(job);
+  const std::vector<TouchedPart> touched = find_touched_parts(job);
   std::vector<PartKey> keys;
-  for (const auto& [index, decals] : touched) {
+  for (const auto& [index, every_node, decals] : touched) {
     APPLIQUE_CHECK(check_uvs(job, index, *decals.begin()));
     const ModelPart& part = job.model.parts[index];
-    keys.push_back({part.node, part.mesh, part.primitive});
+    keys.push_back({part.node, part.mesh, part.primitive, every_node});
   }
   const std::vector<std::size_t> isolated = isolate_materials(document, keys);
 
   std::map<std::size_t, BakeTarget> targets;
   std::size_t i = 0;
-  for (const auto& [index, decals] : touched) {
+  for (const auto& [index, every_node, decals] : touched) {
     BakeTarget& target = targets[isolated[i]];
     target.isolated = isolated[i++];
     target.material = job.model.parts[index].material;
@@ -131,9 +122,9 @@ Transfer lay_out_transfer(const SolvedJob& job, const BakeTarget& target, std::s
   std::map<std::uint32_t, std::vector<char>> own;  // by part: the triangles that carry the decal
   for (const std::uint32_t part : target.parts) own[part].resize(job.model.parts[part].triangles.size(), 0);
   for_textured_faces(decal, [&](PatchFaceId f, const ModelSurface::Source& source) {
-    const auto part = own.find(source.part);
-    if (part == own.end()) return;
-    part->second[source.triangle] = 1;
+    const auto part = part_that_shows(job.model, decal.job, target.parts, source.part);
+    if (!part) return;
+    own.at(*part)[source.triangle] = 1;
     TransferFace face;
     face.texel = texel_corners(source.part, source.triangle);
     for (std::size_t k = 0; k < 3; ++k) {

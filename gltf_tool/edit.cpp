@@ -28,7 +28,8 @@ std::vector<std::size_t> isolate_meshes(Document& document, std::span<const Part
   for (std::size_t n = 0; n < nodes.size(); ++n)
     if (const auto mesh = index_of(nodes[n], "mesh")) users[*mesh].push_back(n);
   std::set<std::size_t> touched;
-  for (const PartKey& part : parts) touched.insert(part.node);
+  for (const PartKey& part : parts)
+    if (!part.every_node) touched.insert(part.node);
   std::map<std::size_t, std::size_t> mesh_of;  // touched node -> its mesh
   for (const auto& [mesh, sharers] : users) {
     // The original stays with the untouched nodes; where there are none, with the first.
@@ -47,18 +48,22 @@ std::vector<std::size_t> isolate_meshes(Document& document, std::span<const Part
     }
   }
   std::vector<std::size_t> result;
-  for (const PartKey& part : parts) result.push_back(mesh_of.at(part.node));
+  for (const PartKey& part : parts) result.push_back(part.every_node ? part.mesh : mesh_of.at(part.node));
   return result;
 }
 
 /// For each part, which of its mesh's touched instances it belongs to: 0 for the first node, and so on.
 std::vector<std::size_t> instance_ranks(std::span<const PartKey> parts) {
-  std::map<std::size_t, std::set<std::size_t>> nodes;  // mesh -> touched nodes
-  for (const PartKey& part : parts) nodes[part.mesh].insert(part.node);
+  // mesh -> touched nodes; all others together are the first.
+  std::map<std::size_t, std::set<std::optional<std::size_t>>> instances;
+  const auto instance_of = [](const PartKey& part) {
+    return part.every_node ? std::nullopt : std::optional(part.node);
+  };
+  for (const PartKey& part : parts) instances[part.mesh].insert(instance_of(part));
   std::vector<std::size_t> ranks;
   for (const PartKey& part : parts) {
-    const auto& set = nodes[part.mesh];
-    ranks.push_back(static_cast<std::size_t>(std::distance(set.begin(), set.find(part.node))));
+    const auto& set = instances[part.mesh];
+    ranks.push_back(static_cast<std::size_t>(std::distance(set.begin(), set.find(instance_of(part)))));
   }
   return ranks;
 }

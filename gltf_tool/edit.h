@@ -14,13 +14,15 @@ struct PartKey {
   std::size_t node = 0;
   std::size_t mesh = 0;
   std::size_t primitive = 0;
+  bool every_node = false;  ///< It stands for all nodes that show the mesh and have no part in the list.
 };
 
 /// Makes the material of each given part (all that a decal touches) one that nothing else uses, and returns
-/// its index, by part. A mesh that other nodes show too is copied for the node (accessors stay shared); a
-/// material that other primitives, or variants, use is copied; a part without a material gets one. Parts that
-/// shared a material go on sharing it, unless they are instances of one mesh, whose texture coordinates would
-/// coincide. The document must have passed check_document; the parts are distinct and exist.
+/// its index, by part. A mesh that other nodes show too is copied for the node (accessors stay shared), but
+/// not for a part that stands for all of them; a material that other primitives, or variants, use is copied;
+/// a part without a material gets one. Parts that shared a material go on sharing it, unless they are
+/// instances of one mesh, whose texture coordinates would coincide. The document must have passed
+/// check_document; the parts are distinct and exist.
 std::vector<std::size_t> isolate_materials(Document& document, std::span<const PartKey> parts);
 
 /// Shows an image (bytes of a PNG, JPEG or WebP) as the base colour of an isolated material. The texture is

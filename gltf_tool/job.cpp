@@ -102,6 +102,7 @@ DecalJob decal_of(const json& decal, const std::filesystem::path& folder) {
   out.opacity = decal.value("opacity", out.opacity);
   out.blend = blend_of(decal.value("blend", "normal"));
   out.output = decal.value("output", "bake") == "overlay" ? DecalOutput::overlay : DecalOutput::bake;
+  out.instance = decal.value("instance", "this") == "all" ? Instance::all : Instance::only_this;
   if (decal.contains("offset")) out.offset = decal["offset"].get<double>();
   out.method = method_of(decal.value("method", name_of(out.method)));
   if (decal.contains("planar")) out.planar = limits_of(decal["planar"]);

@@ -29,6 +29,10 @@ using RegionChoice = std::variant<AutomaticRegion, ContourRegion, AlphaRegion, R
 
 enum class DecalOutput { bake, overlay };
 
+/// Where several nodes show the mesh that a baked decal lies on: whether it is seen there only, or on all of
+/// them.
+enum class Instance { only_this, all };
+
 /// A pin as the job file states it.
 struct JobFeature {
   Pixel image;
@@ -50,7 +54,8 @@ struct DecalJob {
   double opacity = 1;                ///< 0..1.
   BlendMode blend = BlendMode::normal;
   DecalOutput output = DecalOutput::bake;
-  std::optional<double> offset;  ///< Of an overlay, scene units, >= 0; left out: default_offset().
+  Instance instance = Instance::only_this;  ///< Of a baked decal.
+  std::optional<double> offset;             ///< Of an overlay, scene units, >= 0; left out: default_offset().
   Method method = Method::applique;
   PlanarLimits planar;                ///< Of Method::planar.
   Parents parents = Parents::upwind;  ///< Of Method::expmap.

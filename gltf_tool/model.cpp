@@ -164,6 +164,7 @@ class PartReader {
                    .normals = {},
                    .uvs = {},
                    .triangles = {},
+                   .tinted = {},
                    .mirrored = false};
     part.material = index_of(document_.json["meshes"][mesh]["primitives"][primitive], "material");
     if (!entry.attributes.contains("POSITION")) return part;
@@ -177,6 +178,7 @@ class PartReader {
     APPLIQUE_CHECK(apply_morph_targets(part, entry));
     APPLIQUE_CHECK(place(part, entry));
     APPLIQUE_CHECK(read_uvs(part, entry));
+    read_colours(part, entry);
     APPLIQUE_CHECK(read_triangles(part, entry));
     if (part.normals.empty()) part.normals = smooth_normals(part);
     for (Vec3& normal : part.normals)
@@ -290,6 +292,22 @@ class PartReader {
     for (std::size_t i = 0; i < part.uvs.size(); ++i)
       part.uvs[i] = mapping.apply({values[2 * i], values[2 * i + 1]});
     return {};
+  }
+
+  /// Colours matter for a warning only: those that cannot be read are left out.
+  void read_colours(ModelPart& part, const tinygltf::Primitive& entry) const {
+    const auto colours = entry.attributes.find("COLOR_0");
+    if (colours == entry.attributes.end()) return;
+    const auto& accessor = model_.accessors[static_cast<std::size_t>(colours->second)];
+    const int components = tinygltf::GetNumComponentsInType(static_cast<std::uint32_t>(accessor.type));
+    const auto values = read_accessor(model_, colours->second, components, where_);
+    const auto width = static_cast<std::size_t>(components);
+    if (!values || width < 3 || values->size() != width * part.positions.size()) return;
+    const auto is_tinted = [&](const double* colour) {
+      return std::any_of(colour, colour + 3, [](double x) { return x < 1; });
+    };
+    for (std::size_t i = 0; i < part.positions.size(); ++i)
+      part.tinted.push_back(is_tinted(&(*values)[i * width]) ? 1 : 0);
   }
 
   Result<void> read_triangles(ModelPart& part, const tinygltf::Primitive& entry) {

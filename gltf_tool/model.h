@@ -30,6 +30,7 @@ struct ModelPart {
                                            ///< texture space [0,1] before wrapping. Empty: no UVs.
   std::vector<std::array<std::uint32_t, 3>> triangles;  ///< Lists, strips and fans alike, in drawing order;
                                                         ///< winding seen from outside.
+  std::vector<char> tinted;  ///< By vertex: its colour (COLOR_0) is not white. Empty: there are no colours.
   bool mirrored =
       false;  ///< The node mirrors: corners 1 and 2 of each triangle are exchanged against the file.
 };

@@ -154,6 +154,11 @@ Result<void> solve_geometry(const Model& model, SurfaceCache& surfaces, SolvedDe
         {"offset_ignored",
          fmt::format("decal '{}': 'offset' is not used, because only an overlay has one", name)});
 
+  if (decal.job.instance == Instance::all && decal.job.output == DecalOutput::overlay)
+    decal.warnings.push_back(
+        {"instance_ignored",
+         fmt::format("decal '{}': 'instance' is not used, because an overlay lies on one node only", name)});
+
   SolveOptions options = options_of(decal.job);
   if (traced) options.trace = &decal.trace;
   APPLIQUE_TRY(decal.map, of_decal(decal.job, solve_decal(entry->surface->mesh, input_of(decal), options)));

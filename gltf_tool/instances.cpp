@@ -1,0 +1,105 @@
+#include "instances.h"
+
+#include <algorithm>
+#include <map>
+#include <utility>
+
+namespace applique {
+namespace {
+
+using Primitive = std::pair<std::size_t, std::size_t>;  // mesh, primitive
+
+Primitive primitive_of(const ModelPart& part) {
+  return {part.mesh, part.primitive};
+}
+
+/// Calls `visit(source)` for each triangle of the model that shows some of the image.
+template <class Visit>
+void for_textured_sources(const SolvedDecal& decal, const Visit& visit) {
+  for (const PatchFaceId f : ids<PatchFaceId>(decal.map.patch.faces.size())) {
+    const FaceId face = decal.map.patch.faces[f].mesh_face;
+    if (decal.map.textured[f] != 0 && face.valid()) visit(decal.surface->source(face));
+  }
+}
+
+/// What lies where: the decals of one node by part, those of all nodes by primitive.
+struct Layers {
+  std::map<std::uint32_t, std::set<std::size_t>> own;
+  std::map<Primitive, std::set<std::size_t>> common;
+  std::set<std::size_t> own_nodes;  ///< Nodes with decals of their own: their mesh differs from the others'.
+};
+
+Layers layers_of(const SolvedJob& job) {
+  Layers layers;
+  for (std::size_t d = 0; d < job.decals.size(); ++d) {
+    if (job.decals[d].job.output != DecalOutput::bake) continue;
+    for_textured_sources(job.decals[d], [&](const ModelSurface::Source& source) {
+      const ModelPart& part = job.model.parts[source.part];
+      if (job.decals[d].job.instance == Instance::all) {
+        layers.common[primitive_of(part)].insert(d);
+      } else {
+        layers.own[source.part].insert(d);
+        layers.own_nodes.insert(part.node);
+      }
+    });
+  }
+  return layers;
+}
+
+/// Whether a node without decals of its own shows the mesh, in whatever scene.
+bool is_shown_elsewhere(const SolvedJob& job, const std::set<std::size_t>& own_nodes, std::size_t mesh) {
+  const auto& nodes = job.model.document.json.at("nodes");
+  for (std::size_t n = 0; n < nodes.size(); ++n)
+    if (index_of(nodes[n], "mesh") == mesh && !own_nodes.contains(n)) return true;
+  return false;
+}
+
+}  // namespace
+
+std::vector<TouchedPart> find_touched_parts(const SolvedJob& job) {
+  const Layers layers = layers_of(job);
+  std::vector<TouchedPart> touched;
+  std::map<Primitive, std::uint32_t> others;  // of the nodes without decals of their own, some part
+  for (std::uint32_t p = 0; p < job.model.parts.size(); ++p) {
+    const ModelPart& part = job.model.parts[p];
+    const auto common = layers.common.find(primitive_of(part));
+    if (!layers.own_nodes.contains(part.node)) {
+      if (common != layers.common.end()) others[primitive_of(part)] = p;
+      continue;
+    }
+    TouchedPart own;
+    own.part = p;
+    if (const auto decals = layers.own.find(p); decals != layers.own.end()) own.decals = decals->second;
+    if (common != layers.common.end()) {
+      own.decals.insert(common->second.begin(), common->second.end());
+      others.try_emplace(common->first, p);
+    }
+    if (!own.decals.empty()) touched.push_back(std::move(own));
+  }
+  for (const auto& [primitive, part] : others)
+    if (is_shown_elsewhere(job, layers.own_nodes, primitive.first))
+      touched.push_back({part, true, layers.common.at(primitive)});
+  return touched;
+}
+
+std::optional<std::uint32_t> part_that_shows(const Model& model, const DecalJob& decal,
+                                             const std::vector<std::uint32_t>& parts, std::uint32_t source) {
+  const auto shown = std::find_if(parts.begin(), parts.end(), [&](std::uint32_t part) {
+    return part == source || (decal.instance == Instance::all &&
+                              primitive_of(model.parts[part]) == primitive_of(model.parts[source]));
+  });
+  return shown == parts.end() ? std::nullopt : std::optional(*shown);
+}
+
+bool has_vertex_colours(const SolvedDecal& decal, const Model& model) {
+  bool found = false;
+  for_textured_sources(decal, [&](const ModelSurface::Source& source) {
+    const ModelPart& part = model.parts[source.part];
+    if (part.tinted.empty()) return;
+    for (const std::uint32_t corner : part.triangles[source.triangle])
+      found = found || part.tinted[corner] != 0;
+  });
+  return found;
+}
+
+}  // namespace applique
