@@ -216,6 +216,14 @@ Result<void> check_method_options(const json& decals, const std::string& file) {
 
 }  // namespace
 
+std::vector<std::filesystem::path> images_of(const DecalJob& decal) {
+  std::vector<std::filesystem::path> images = {decal.image};
+  if (!decal.mask.empty()) images.push_back(decal.mask);
+  for (const DecalLayer& layer : decal.layers)
+    if (!layer.image.empty()) images.push_back(layer.image);
+  return images;
+}
+
 Result<Job> load_job(const std::filesystem::path& path) {
   APPLIQUE_TRY(const auto bytes, read_file(path));
   const std::string file = path.filename().string();

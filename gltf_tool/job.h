@@ -74,6 +74,9 @@ struct DecalJob {
   Overlap overlap = Overlap::stop;
 };
 
+/// All the images that a decal names.
+std::vector<std::filesystem::path> images_of(const DecalJob& decal);
+
 /// A job file, version 1.
 struct Job {
   std::filesystem::path path;   ///< The job file itself.
