@@ -2,6 +2,7 @@
 // image by the face's affine map, plane -> image by the warp, a filtered sample of the image, blended over the texel.
 #version 450
 #extension GL_GOOGLE_include_directive : require
+#include "compositing.h"
 #include "transfer_types.h"
 
 layout(local_size_x = 8, local_size_y = 8) in;
@@ -170,14 +171,12 @@ vec3 to_srgb(vec3 c) {
   return mix(c * 12.92, 1.055 * pow(c, vec3(1.0 / 2.4)) - 0.055, greaterThan(c, vec3(0.0031308)));
 }
 
-// `source` is premultiplied; both colours linear; the result's colour is straight. W3C compositing, §5 to §10.
-vec4 composite(vec4 source, vec4 below) {
-  float backdrop = constants.opaque != 0u ? 1.0 : below.a;
-  vec3 mixed = backdrop * source.rgb;                                             // normal
-  if (constants.blend == 1u) mixed = backdrop * source.rgb * below.rgb;           // multiply
-  if (constants.blend == 2u) mixed += backdrop * (source.a - source.rgb) * below.rgb;  // screen
-  vec3 colour = (1.0 - backdrop) * source.rgb + mixed + (1.0 - source.a) * backdrop * below.rgb;
-  return vec4(colour / (source.a + backdrop * (1.0 - source.a)), source.a + below.a * (1.0 - source.a));
+// The direction of the image's x in the texture's tangent frame, at `d` texels from the face's.
+vec2 directions(FaceMap face, vec2 d) {
+  uint first = face.first_point - 3u;
+  vec2 along = point_at(first) + point_at(first + 1u) * d.x + point_at(first + 2u) * d.y;
+  float squared = dot(along, along);
+  return squared > 0.0 ? along * inversesqrt(squared) : vec2(1.0, 0.0);
 }
 
 void main() {
@@ -229,7 +228,8 @@ void main() {
     }
     place = constants.half_size + constants.pixels_per_unit * warp(place);
   }
-  if (face.flags >= face_cells) place = in_grid(face.first_point, int(face.flags / face_cells), place);
+  uint cells = (face.flags & ~face_reversed) / face_cells;
+  if (cells > 0u) place = in_grid(face.first_point, int(cells), place);
   int index = work.y * constants.work_size.x + work.x;
   if (constants.keep_samples != 0u && seed == texel)
     work_words[constants.work_samples + index] = floatBitsToUint(vec2(face.pixel) + place);
@@ -246,9 +246,20 @@ void main() {
   if (source.a <= 0.0) return;
   uvec2 stored = work_words[index];
   vec4 below = vec4(unpackUnorm2x16(stored.x), unpackUnorm2x16(stored.y));
-  vec4 result = composite(source, vec4(to_linear(below.rgb), below.a));
-  result.rgb = to_srgb(clamp(result.rgb, 0.0, 1.0));
-  result.a = clamp(result.a, 0.0, 1.0);
+  vec4 result;
+  if (constants.encoding == encoding_normal) {
+    vec2 along = directions(face, d);
+    vec2 across = (face.flags & face_reversed) != 0u ? vec2(along.y, -along.x) : vec2(-along.y, along.x);
+    result = composite_normal(constants.blend, source, below, along, across);
+  } else if (constants.encoding == encoding_data) {
+    result = composite(constants.blend, source, below, true);
+  } else {
+    result = composite(constants.blend, source, vec4(to_linear(below.rgb), below.a), constants.opaque != 0u);
+    result.rgb = to_srgb(clamp(result.rgb, 0.0, 1.0));
+  }
+  result = clamp(result, 0.0, 1.0);
   uvec4 value = uvec4(result * constants.max_value + 0.5) * uint(65535.0 / constants.max_value + 0.5);
+  uvec4 kept = uvec4(stored.x & 0xffffu, stored.x >> 16, stored.y & 0xffffu, stored.y >> 16);
+  value = mix(kept, value, notEqual(constants.channels & uvec4(1u, 2u, 4u, 8u), uvec4(0u)));
   work_words[index] = uvec2(value.x | value.y << 16, value.z | value.w << 16);
 }

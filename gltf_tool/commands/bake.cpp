@@ -94,7 +94,8 @@ namespace {
 
 std::vector<std::filesystem::path> inputs_of(const Job& job) {
   std::vector<std::filesystem::path> inputs = {job.path, job.model};
-  for (const DecalJob& decal : job.decals) inputs.push_back(decal.image);
+  for (const DecalJob& decal : job.decals)
+    for (std::filesystem::path& image : images_of(decal)) inputs.push_back(std::move(image));
   return inputs;
 }
 

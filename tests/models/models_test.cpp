@@ -126,7 +126,7 @@ TEST_F(Models, BakeOnTheGpuAsOnTheCpu) {
     for (const BakeTarget& target : *targets) {
       auto before = initial_texture(solved, target);
       ASSERT_TRUE(before) << before.error().message;
-      Transfer transfer = lay_out_transfer(solved, target, 0, before->width, before->height);
+      Transfer transfer = lay_out_transfer(solved, target, target.shares.front(), before->width, before->height);
       transfer.image = &image;
       Image on_cpu = *before, on_gpu = *before;
       const TransferResult cpu = transfer_on_cpu(transfer, on_cpu, true);

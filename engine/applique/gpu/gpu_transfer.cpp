@@ -131,6 +131,9 @@ shader::FaceMap to_face_map(const Transfer& transfer, std::size_t index, const P
   map.level = static_cast<float>(face.footprint.level);
   map.probes = static_cast<std::uint32_t>(face.footprint.probes);
   map.flags = face.clamped ? shader::face_clamped : 0;
+  if (transfer.encoding == Encoding::normal)
+    for (const auto& along : {face.along.value, face.along.dx, face.along.dy})
+      points.push_back(to_floats(along));
   map.first_point = static_cast<std::uint32_t>(points.size());
   if (refined.cells > 0) {
     map.flags |= static_cast<std::uint32_t>(refined.cells) * shader::face_cells;
@@ -142,6 +145,7 @@ shader::FaceMap to_face_map(const Transfer& transfer, std::size_t index, const P
     map.flags |= shader::face_warped;
     if (transfer.warp->groups > 1) add_places(transfer, index, points);
   }
+  if (transfer.faces[index].reversed) map.flags |= shader::face_reversed;
   return map;
 }
 
@@ -347,6 +351,8 @@ Result<void> GpuTransfer::run_tile(Run& run, std::uint32_t sheet, const TexelRec
   constants.opacity = static_cast<float>(transfer.opacity);
   constants.blend = static_cast<std::uint32_t>(transfer.blend);
   constants.opaque = transfer.opaque ? 1 : 0;
+  constants.encoding = static_cast<std::uint32_t>(transfer.encoding);
+  for (std::uint32_t c = 0; c < 4; ++c) constants.channels |= transfer.channels[c] ? 1U << c : 0;
   constants.max_value = run.bits == 8 ? 255.0F : 65535.0F;
   constants.keep_samples = run.keep_samples ? 1 : 0;
   if (warped) {

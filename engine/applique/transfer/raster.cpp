@@ -370,6 +370,11 @@ PlacedFace place_face(const Transfer& transfer, const Placement& placement, int 
   placed.map = in_grid         ? affine_map(corners, {{{0, 0}, {n, 0}, {0, n}}})
                : placed.warped ? affine_map(corners, plane)
                                : to_pixels;
+  if (transfer.encoding == Encoding::normal) {
+    std::array<std::array<double, 2>, 3> along;
+    for (int k = 0; k < 3; ++k) along[k] = {face.along[k].real(), face.along[k].imag()};
+    placed.along = affine_map(corners, along);
+  }
   placed.clamped = std::abs(triangle_area2(corners)) < longest;
   return placed;
 }

@@ -75,6 +75,7 @@ struct PlacedFace {
   /// pixels. A warp with groups needs more than a plane point: there, to the place in a grid of one cell.
   AffineMap map;
   Footprint footprint;
+  AffineMap along;  ///< To TransferFace::along; for normals.
   bool warped = false;
   bool clamped = false;  ///< Thinner than a texel: its gutter repeats its nearest texel, it is not extended.
 };
