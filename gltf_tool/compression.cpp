@@ -12,6 +12,9 @@ namespace {
 
 using Json = Document::Json;
 
+/// First byte of attributes in KHR_meshopt_compression's newer codec.
+constexpr std::uint8_t attribute_codec_1 = 0xa1;
+
 std::span<const std::uint8_t> bytes_of(const Buffers& buffers, const Json& range) {
   const auto bytes = buffers.bytes[range["buffer"].get<std::size_t>()];
   const std::size_t offset = index_of(range, "byteOffset").value_or(0);
@@ -125,6 +128,15 @@ Result<std::vector<std::uint8_t>> decode_meshopt(const Buffers& buffers, const J
   // No stream of the codec expands 256-fold: a larger count is a lie that would only cost memory.
   if (stride > 256 || count > (input.size() + 64) * 256 / stride)
     return invalid("says more elements than it can hold");
+  if (mode_name == "ATTRIBUTES" && !input.empty() && input[0] == attribute_codec_1)
+    return fail(
+        ErrorCode::model_unsupported,
+        fmt::format("{}: its meshopt data are of version 1 of the attribute codec, which is not read; "
+                    "compress the model by EXT_meshopt_compression (version 0), or not at all",
+                    where));
+  const auto* filter = find(compression, {"filter"});
+  const std::string filter_name = filter != nullptr ? filter->get<std::string>() : "NONE";
+  if (filter_name == "COLOR") return std::vector<std::uint8_t>();
   std::vector<std::uint8_t> output(count * stride);
   int status = 1;
   if (mode_name == "ATTRIBUTES" && stride % 4 == 0) {
@@ -137,8 +149,6 @@ Result<std::vector<std::uint8_t>> decode_meshopt(const Buffers& buffers, const J
     return invalid(fmt::format("has mode '{}' with a stride of {}", mode_name, stride));
   }
   if (status != 0) return invalid(fmt::format("cannot be decoded (status {})", status));
-  const auto* filter = find(compression, {"filter"});
-  const std::string filter_name = filter != nullptr ? filter->get<std::string>() : "NONE";
   if (filter_name == "OCTAHEDRAL" && (stride == 4 || stride == 8)) {
     meshopt_decodeFilterOct(output.data(), count, stride);
   } else if (filter_name == "QUATERNION" && stride == 8) {

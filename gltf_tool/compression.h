@@ -26,7 +26,9 @@ Result<DracoPrimitive> decode_draco(const Document& document, const Buffers& buf
                                     const Document::Json& primitive, const std::string& where);
 
 /// Decodes a buffer view compressed with EXT_meshopt_compression or KHR_meshopt_compression; `compression` is
-/// the extension object, `where` names the view in errors (model_invalid).
+/// the extension object, `where` names the view in errors (model_invalid; model_unsupported for version 1 of
+/// the attribute codec). Colours behind the filter COLOR stay undecoded, and the result is empty: nothing
+/// here needs them.
 Result<std::vector<std::uint8_t>> decode_meshopt(const Buffers& buffers, const Document::Json& compression,
                                                  const std::string& where);
 

@@ -61,13 +61,13 @@ Result<void> DecalLayers::load_alpha() {
     for (std::size_t i = 0; i < alpha_.size(); ++i) alpha_[i] = own.rgba[4 * i + 3];
     return {};
   }
-  APPLIQUE_TRY(const Image mask, read_scaled(decal_->job.mask));
+  APPLIQUE_TRY(const Image mask, read_scaled(decal_->job.mask, Floats::data));
   for (std::size_t i = 0; i < alpha_.size(); ++i) alpha_[i] = product(mask.rgba[4 * i], mask.rgba[4 * i + 3]);
   return {};
 }
 
-Result<Image> DecalLayers::read_scaled(const std::filesystem::path& path) const {
-  auto image = read_image(path);
+Result<Image> DecalLayers::read_scaled(const std::filesystem::path& path, Floats floats) const {
+  auto image = read_image(path, floats);
   if (!image)
     return fail(image.error().code, fmt::format("decal '{}': {}", decal_->job.name, image.error().message));
   if (image->width == decal_->image.width && image->height == decal_->image.height) return image;
@@ -79,7 +79,9 @@ Result<Image> DecalLayers::read_scaled(const std::filesystem::path& path) const 
 Result<Image> DecalLayers::colours(const DecalLayer& layer) const {
   const Image& own = decal_->image;
   if (layer.value) return constant_image(own.width, own.height, *layer.value);
-  if (!layer.image.empty()) return read_scaled(layer.image);
+  if (!layer.image.empty())
+    return read_scaled(layer.image,
+                       encoding_of(layer.slot) == Encoding::colour ? Floats::light : Floats::data);
   Image image = own;
   for (std::size_t i = 3; i < image.rgba.size(); i += 4) image.rgba[i] = 65535;
   return image;

@@ -24,7 +24,7 @@ class DecalLayers {
 
  private:
   Result<void> load_alpha();
-  [[nodiscard]] Result<Image> read_scaled(const std::filesystem::path& path) const;
+  [[nodiscard]] Result<Image> read_scaled(const std::filesystem::path& path, Floats floats) const;
   Result<Image> colours(const DecalLayer& layer) const;
 
   const SolvedDecal* decal_;

@@ -64,21 +64,24 @@ bool write_all(const std::filesystem::path& path, std::span<const std::uint8_t> 
 
 }  // namespace
 
+std::filesystem::path full_path(const std::filesystem::path& path) {
+  std::error_code failed;
+  // Of a relative path whose first name is not there, weakly_canonical would make nothing.
+  const std::filesystem::path canonical =
+      std::filesystem::weakly_canonical(std::filesystem::absolute(path, failed), failed);
+  return failed ? path : canonical;
+}
+
 Result<void> check_distinct(const std::vector<std::filesystem::path>& outputs,
                             const std::vector<std::filesystem::path>& inputs) {
-  const auto file = [](const std::filesystem::path& path) {
-    std::error_code failed;
-    const std::filesystem::path canonical = std::filesystem::weakly_canonical(path, failed);
-    return failed ? path : canonical;
-  };
   for (std::size_t i = 0; i < outputs.size(); ++i) {
     for (std::size_t j = 0; j < i; ++j)
-      if (file(outputs[i]) == file(outputs[j]))
+      if (full_path(outputs[i]) == full_path(outputs[j]))
         return fail(ErrorCode::output_unwritable,
                     fmt::format("'{}' would be written twice; give each output a name of its own",
                                 outputs[i].string()));
     for (const std::filesystem::path& input : inputs)
-      if (file(outputs[i]) == file(input))
+      if (full_path(outputs[i]) == full_path(input))
         return fail(ErrorCode::output_unwritable,
                     fmt::format("'{}' is an input; choose another name for the output", outputs[i].string()));
   }

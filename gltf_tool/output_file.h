@@ -19,6 +19,9 @@ Result<void> write_file(const std::filesystem::path& path, std::string_view text
 /// before the work rather than after it. Errors: output_unwritable.
 Result<void> check_writable(const std::filesystem::path& path);
 
+/// The one name of a file, which need not be there: absolute, links followed.
+std::filesystem::path full_path(const std::filesystem::path& path);
+
 /// Whether the outputs are different files, none of which is an input. Errors: output_unwritable, naming the
 /// file.
 Result<void> check_distinct(const std::vector<std::filesystem::path>& outputs,

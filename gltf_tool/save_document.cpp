@@ -137,7 +137,7 @@ class SideFiles {
     std::error_code error;
     const fs::path source = document.folder.empty() ? "." : document.folder;
     same_folder_ = fs::equivalent(folder_, source, error);
-    for (const fs::path& file : keep) keep_.insert(fs::weakly_canonical(file, error));
+    for (const fs::path& file : keep) keep_.insert(full_path(file));
     for (const char* collection : {"buffers", "images"})
       for (std::size_t i = 0; i < count_of(document, collection); ++i)
         if (const auto* uri = find(document.json[collection][i], {"uri"}))
@@ -197,10 +197,7 @@ class SideFiles {
   }
 
   /// Whether a name in the output's folder is that of a file that must stay.
-  [[nodiscard]] bool is_kept(const fs::path& name) const {
-    std::error_code error;
-    return keep_.contains(fs::weakly_canonical(folder_ / name, error));
-  }
+  [[nodiscard]] bool is_kept(const fs::path& name) const { return keep_.contains(full_path(folder_ / name)); }
 
   Document& document_;
   std::string stem_;

@@ -20,7 +20,7 @@ double share(double value) {
 
 }  // namespace
 
-Image image_of_floats(int width, int height, int channels, std::span<const float> values) {
+Image image_of_floats(int width, int height, int channels, std::span<const float> values, Floats floats) {
   APPLIQUE_ASSERT(values.size() == static_cast<std::size_t>(width) * height * channels);
   Image image;
   image.width = width;
@@ -36,7 +36,8 @@ Image image_of_floats(int width, int height, int channels, std::span<const float
       const double alpha = image.has_alpha() ? share(in[channels - 1]) : 1;
       for (int k = 0; k < 3; ++k) {
         const double premultiplied = in[grey ? 0 : k];
-        out[k] = to_16_bits(linear_to_srgb(share(alpha > 0 ? premultiplied / alpha : premultiplied)));
+        const double value = share(alpha > 0 ? premultiplied / alpha : premultiplied);
+        out[k] = to_16_bits(floats == Floats::light ? linear_to_srgb(value) : value);
       }
       out[3] = to_16_bits(alpha);
     }

@@ -96,7 +96,7 @@ void multiply_alpha(std::vector<float>& values, std::size_t channels) {
 
 /// Floats fill the picture's frame, of which the file may hold a part only, or more.
 Result<Image> read_floats(OIIO::ImageInput& input, const OIIO::ImageSpec& spec, int channels,
-                          const std::string& name) {
+                          const std::string& name, Floats floats) {
   const auto width = static_cast<std::size_t>(spec.width), count = static_cast<std::size_t>(channels);
   std::vector<float> stored(width * spec.height * count);
   if (!input.read_image(0, 0, 0, channels, OIIO::TypeDesc::FLOAT, stored.data()))
@@ -106,7 +106,7 @@ Result<Image> read_floats(OIIO::ImageInput& input, const OIIO::ImageSpec& spec, 
   const int frame_width = spec.full_width, frame_height = spec.full_height;
   if (spec.x == spec.full_x && spec.y == spec.full_y && spec.width == frame_width &&
       spec.height == frame_height)
-    return image_of_floats(spec.width, spec.height, channels, stored);
+    return image_of_floats(spec.width, spec.height, channels, stored, floats);
   APPLIQUE_CHECK(check_image_size(frame_width, frame_height, name));
   std::vector<float> frame(static_cast<std::size_t>(frame_width) * frame_height * count, 0.0F);
   const int left = spec.x - spec.full_x, top = spec.y - spec.full_y;
@@ -116,7 +116,7 @@ Result<Image> read_floats(OIIO::ImageInput& input, const OIIO::ImageSpec& spec, 
       const auto to = static_cast<std::size_t>(y) * frame_width + static_cast<std::size_t>(x);
       std::copy_n(&stored[from * count], count, &frame[to * count]);
     }
-  return image_of_floats(frame_width, frame_height, channels, frame);
+  return image_of_floats(frame_width, frame_height, channels, frame, floats);
 }
 
 /// Divides colours by the alpha that is multiplied into them.
@@ -197,7 +197,7 @@ Image make_image(int width, int height, std::array<std::uint16_t, 4> colour) {
   return image;
 }
 
-Result<Image> read_image(const std::filesystem::path& path) {
+Result<Image> read_image(const std::filesystem::path& path, Floats floats) {
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"), &std::fclose);
   const auto unreadable = [&](int cause) {
     return fail(ErrorCode::file_unreadable,
@@ -213,10 +213,10 @@ Result<Image> read_image(const std::filesystem::path& path) {
     bytes.insert(bytes.end(), block.begin(), block.begin() + static_cast<std::ptrdiff_t>(read));
   }
   if (std::ferror(file.get())) return unreadable(errno);
-  return decode_image(bytes, path.string());
+  return decode_image(bytes, path.string(), floats);
 }
 
-Result<Image> decode_image(std::span<const std::uint8_t> bytes, const std::string& name) {
+Result<Image> decode_image(std::span<const std::uint8_t> bytes, const std::string& name, Floats floats) {
   const auto invalid = [&](const std::string& reason) {
     return fail(ErrorCode::image_invalid, fmt::format("image '{}': {}", name, reason));
   };
@@ -251,7 +251,7 @@ Result<Image> decode_image(std::span<const std::uint8_t> bytes, const std::strin
     return invalid(
         fmt::format("{} channels; 1 to 4 can be used (grey, grey + alpha, RGB, RGBA)", spec.nchannels));
   }
-  if (spec.format.is_floating_point()) return read_floats(*input, spec, channels, name);
+  if (spec.format.is_floating_point()) return read_floats(*input, spec, channels, name, floats);
   const bool wide = spec.format == OIIO::TypeDesc::UINT16;
   if (!wide && spec.format != OIIO::TypeDesc::UINT8) {
     return invalid(fmt::format("its values are of type {}; 8-bit and 16-bit integers and floats can be used",

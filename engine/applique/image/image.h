@@ -32,16 +32,21 @@ struct Image {
 /// An image of one colour (16-bit RGBA), 4 channels of 8 bits.
 Image make_image(int width, int height, std::array<std::uint16_t, 4> colour);
 
+/// What floating-point values of a file are: light, which becomes sRGB-encoded, or numbers from 0 to 1 (the
+/// roughness, a mask), which stay.
+enum class Floats { light, data };
+
 /// Whether some pixel is not opaque.
 bool has_transparency(const Image& image);
 
 /// Reads WebP and any format that OpenImageIO knows (PNG with palettes, JPEG, TIFF, OpenEXR, Radiance HDR,
 /// …). Floating-point values are taken as image_of_floats says (float_image.h). Errors: file_unreadable,
 /// image_invalid (with the decoder's reason).
-Result<Image> read_image(const std::filesystem::path& path);
+Result<Image> read_image(const std::filesystem::path& path, Floats floats = Floats::light);
 
 /// The same from bytes in memory; `name` stands for the file in errors.
-Result<Image> decode_image(std::span<const std::uint8_t> bytes, const std::string& name);
+Result<Image> decode_image(std::span<const std::uint8_t> bytes, const std::string& name,
+                           Floats floats = Floats::light);
 
 /// PNG bytes with the image's own channels and bits.
 Result<std::vector<std::uint8_t>> encode_png(const Image& image);
