@@ -211,6 +211,7 @@ Transfer lay_out_transfer(const SolvedJob& job, const BakeTarget& target, const 
   transfer.blend = layer.blend;
   transfer.encoding = encoding_of(layer.slot);
   transfer.channels = layer.channels;
+  transfer.gutter = job.job.gutter;
   const MaterialTexture texture = texture_of(job.model, target);
   transfer.wrap_u = texture.wrap_u;
   transfer.wrap_v = texture.wrap_v;
