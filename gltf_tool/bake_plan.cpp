@@ -30,6 +30,50 @@ double area_of(const Texel& a, const Texel& b, const Texel& c) {
   return 0.5 * std::abs((b[0] - a[0]) * (c[1] - a[1]) - (c[0] - a[0]) * (b[1] - a[1]));
 }
 
+/// Whether two ranges meet, or copies of them by whole periods.
+bool meet(const std::array<double, 2>& a, const std::array<double, 2>& b, double period) {
+  return std::floor((a[1] - b[0]) / period) >= std::ceil((a[0] - b[1]) / period);
+}
+
+/// The texels around a transfer's faces in which other triangles matter to it.
+class Surroundings {
+ public:
+  Surroundings(const Transfer& transfer, int width, int height)
+      : wrap_({transfer.wrap_u, transfer.wrap_v}),
+        size_({static_cast<double>(width), static_cast<double>(height)}) {
+    // A face reaches as far as the gutter, and what lies a gutter further keeps it out; then texel rounding.
+    const double margin = 2.0 * transfer.gutter + 4;
+    for (const TransferFace& face : transfer.faces)
+      for (std::size_t axis = 0; axis < 2; ++axis) {
+        const auto range = range_of(face.texel, axis);
+        range_[axis][0] = std::min(range_[axis][0], range[0] - margin);
+        range_[axis][1] = std::max(range_[axis][1], range[1] + margin);
+      }
+  }
+
+  [[nodiscard]] bool touch(const std::array<Texel, 3>& triangle) const {
+    for (std::size_t axis = 0; axis < 2; ++axis) {
+      const auto range = range_of(triangle, axis);
+      const bool mirrored = wrap_[axis] == WrapMode::mirror;
+      const double period = wrap_[axis] == WrapMode::clamp ? 1e12 : (mirrored ? 2 : 1) * size_[axis];
+      if (!meet(range, range_[axis], period) &&
+          !(mirrored && meet({-range[1], -range[0]}, range_[axis], period)))
+        return false;
+    }
+    return true;
+  }
+
+ private:
+  static std::array<double, 2> range_of(const std::array<Texel, 3>& triangle, std::size_t axis) {
+    const auto [low, high] = std::minmax({triangle[0][axis], triangle[1][axis], triangle[2][axis]});
+    return {low, high};
+  }
+
+  std::array<WrapMode, 2> wrap_;
+  std::array<double, 2> size_;
+  std::array<std::array<double, 2>, 2> range_ = {{{1e9, -1e9}, {1e9, -1e9}}};
+};
+
 /// Encodes a linear colour as the image stores it.
 std::uint16_t stored(double value) {
   return static_cast<std::uint16_t>(257 * std::lround(255 * std::clamp(value, 0.0, 1.0)));
@@ -41,23 +85,10 @@ MaterialTexture texture_of(const Model& model, const BakeTarget& target) {
   return read_texture(model.document, model.document.json.at("materials").at(*target.material), target.slot);
 }
 
-/// A part's texture coordinates for a slot, as ModelPart::uvs are those of the base colour.
-std::vector<std::array<double, 2>> uvs_for(const Model& model, const ModelPart& part, MaterialSlot slot) {
-  if (!part.material || slot == MaterialSlot::base_color) return part.uvs;
-  const auto& material = model.document.json.at("materials").at(*part.material);
-  const UvMapping mapping = read_uv_mapping(material, slot);
-  if (mapping == read_uv_mapping(material)) return part.uvs;
-  const auto set = part.other_uvs.find(mapping.set);
-  if (set == part.other_uvs.end()) return {};
-  std::vector<std::array<double, 2>> uvs = set->second;
-  for (auto& uv : uvs) uv = mapping.apply(uv);
-  return uvs;
-}
-
 Result<void> check_uvs(const SolvedJob& job, const BakeTarget& target) {
   for (const std::uint32_t index : target.parts) {
     const ModelPart& part = job.model.parts[index];
-    if (!uvs_for(job.model, part, target.slot).empty()) continue;
+    if (!slot_uvs(job.model, part, target.slot).empty()) continue;
     const auto& mesh = job.model.document.json.at("meshes").at(part.mesh);
     const std::string name = mesh.value("name", std::string());
     return fail(
@@ -140,6 +171,18 @@ std::array<int, 2> size_of_new(const SolvedJob& job, const BakeTarget& target) {
 
 }  // namespace
 
+std::vector<std::array<double, 2>> slot_uvs(const Model& model, const ModelPart& part, MaterialSlot slot) {
+  if (!part.material || slot == MaterialSlot::base_color) return part.uvs;
+  const auto& material = model.document.json.at("materials").at(*part.material);
+  const UvMapping mapping = read_uv_mapping(material, slot);
+  if (mapping == read_uv_mapping(material)) return part.uvs;
+  const auto set = part.other_uvs.find(mapping.set);
+  if (set == part.other_uvs.end()) return {};
+  std::vector<std::array<double, 2>> uvs = set->second;
+  for (auto& uv : uvs) uv = mapping.apply(uv);
+  return uvs;
+}
+
 Result<std::vector<BakeTarget>> plan_bake(const SolvedJob& job, Document& document) {
   const std::vector<TouchedPart> touched = find_touched_parts(job);
   std::vector<PartKey> keys;
@@ -202,6 +245,7 @@ Transfer lay_out_transfer(const SolvedJob& job, const BakeTarget& target, const 
   transfer.blend = layer.blend;
   transfer.encoding = encoding_of(layer.slot);
   transfer.channels = layer.channels;
+  transfer.gutter = job.job.gutter;
   const MaterialTexture texture = texture_of(job.model, target);
   transfer.wrap_u = texture.wrap_u;
   transfer.wrap_v = texture.wrap_v;
@@ -211,17 +255,18 @@ Transfer lay_out_transfer(const SolvedJob& job, const BakeTarget& target, const 
   std::map<std::uint32_t, std::vector<std::array<double, 2>>> uvs;  // by part
   std::map<std::uint32_t, std::vector<std::array<Tangent, 3>>> frames;
   const auto prepare_part = [&](std::uint32_t index) {
-    const auto [slot_uvs, fresh] = uvs.try_emplace(index);
+    const auto [own_uvs, fresh] = uvs.try_emplace(index);
     if (!fresh) return;
-    slot_uvs->second = uvs_for(job.model, job.model.parts[index], target.slot);
+    own_uvs->second = slot_uvs(job.model, job.model.parts[index], target.slot);
     if (transfer.encoding == Encoding::normal)
-      frames[index] = tangent_frames(job.model.parts[index], slot_uvs->second);
+      frames[index] = tangent_frames(job.model.parts[index], own_uvs->second);
   };
   const auto texel_corners = [&](std::uint32_t part_index, std::uint32_t triangle) {
     const ModelPart& part = job.model.parts[part_index];
+    const auto& part_uvs = uvs[part_index];
     std::array<Texel, 3> texel = {};
     for (std::size_t k = 0; k < 3; ++k) {
-      const auto& uv = uvs[part_index][part.triangles[triangle][k]];
+      const auto& uv = part_uvs[part.triangles[triangle][k]];
       texel[k] = {uv[0] * width, uv[1] * height};
     }
     return texel;
@@ -256,9 +301,13 @@ Transfer lay_out_transfer(const SolvedJob& job, const BakeTarget& target, const 
     face.sheet = map.sheet[f];
     transfer.faces.push_back(face);
   });
+  const Surroundings surroundings(transfer, width, height);
   for (const auto& [part, triangles] : own)
-    for (std::uint32_t t = 0; t < triangles.size(); ++t)
-      if (triangles[t] == 0) transfer.foreign.push_back(texel_corners(part, t));
+    for (std::uint32_t t = 0; t < triangles.size(); ++t) {
+      if (triangles[t] != 0) continue;
+      const std::array<Texel, 3> corners = texel_corners(part, t);
+      if (surroundings.touch(corners)) transfer.foreign.push_back(corners);
+    }
   return transfer;
 }
 

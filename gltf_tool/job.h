@@ -87,6 +87,7 @@ struct Job {
   std::filesystem::path path;   ///< The job file itself.
   std::filesystem::path model;  ///< Absolute, or relative to the working folder.
   int texture_size = 2048;      ///< Texels a side of base colours that the job creates.
+  std::uint32_t gutter = 16;    ///< As Transfer::gutter.
   std::optional<int>
       resolution;  ///< Texels a side of other textures that it creates; none: the base colour's.
   std::vector<DecalJob> decals;  ///< At least one; later ones lie over earlier ones.

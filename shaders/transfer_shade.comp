@@ -32,10 +32,10 @@ layout(std140, set = 0, binding = 4) uniform Tables {
 uint block_at(uint index) { return plan[index / 4u][index % 4u]; }
 
 FaceMap face_at(uint index) {
-  uint first = constants.plan_faces + 4u * index;
-  uvec4 a = plan[first], b = plan[first + 1u], c = plan[first + 2u], d = plan[first + 3u];
+  uint first = constants.plan_faces + 5u * index;
+  uvec4 a = plan[first], b = plan[first + 1u], c = plan[first + 2u], d = plan[first + 3u], e = plan[first + 4u];
   return FaceMap(ivec2(a.xy), ivec2(a.zw), uintBitsToFloat(b.xy), uintBitsToFloat(b.zw), uintBitsToFloat(c.xy),
-                 uintBitsToFloat(c.zw), uintBitsToFloat(d.x), d.y, d.z, d.w);
+                 uintBitsToFloat(c.zw), uintBitsToFloat(d.xy), d.zw, e.x, e.y, e.z, e.w);
 }
 
 // Of the faces' grids.
@@ -133,37 +133,33 @@ vec2 in_grid(uint first, int cells, vec2 place) {
   return corner + f.x * (along - corner) + f.y * (across - corner);
 }
 
-// Trilinear probes along the footprint's longer axis. The place is `pixel + rest`; transparent outside the image.
-vec4 sample_decal(ivec2 pixel, vec2 rest, vec2 axis, float level, uint probes) {
+// The mean of bilinear probes over the footprint. The place is `face.pixel + rest`; transparent outside the image.
+vec4 sample_decal(FaceMap face, vec2 rest) {
+  uvec4 stored = levels[face.level];
+  float scale = 1.0 / float(1u << face.level);
+  // At the finest level the whole pixels stay apart, so that no bit of the rest is lost to them.
+  ivec2 whole = face.level == 0u ? face.pixel : ivec2(0);
+  vec2 middle = face.level == 0u ? rest - 0.5 : (vec2(face.pixel) + rest) * scale - 0.5;
   vec4 sum = vec4(0.0);
-  int finer = int(floor(level));
-  float blend = level - float(finer);
-  int count = int(probes) * (blend > 0.0 ? 2 : 1);
-  for (int i = 0; i < count; ++i) {
-    int probe = blend > 0.0 ? i >> 1 : i;
-    int coarser = blend > 0.0 ? i & 1 : 0;
-    uvec4 stored = levels[finer + coarser];
-    float scale = 1.0 / float(1 << (finer + coarser));
-    vec2 offset = rest + axis * ((float(probe) + 0.5) / float(probes) - 0.5);
-    vec2 place = vec2(pixel) * scale + offset * scale - 0.5;
-    if (finer + coarser == 0) place = offset - 0.5;
-    vec2 base = floor(place);
-    vec2 fraction = place - base;
-    ivec2 corner = ivec2(base) + (finer + coarser == 0 ? pixel : ivec2(0));
-    vec4 bilinear = vec4(0.0);
-    for (int k = 0; k < 4; ++k) {
-      ivec2 q = corner + ivec2(k & 1, k >> 1);
-      vec2 w = mix(1.0 - fraction, fraction, equal(ivec2(k & 1, k >> 1), ivec2(1)));
-      if (all(greaterThanEqual(q, ivec2(0))) && all(lessThan(q, ivec2(stored.yz)))) {
+  for (uint row = 0u; row < face.probes.y; ++row) {
+    vec2 start = middle + ((float(row) + 0.5) / float(face.probes.y) - 0.5) * scale * face.along_y;
+    for (uint column = 0u; column < face.probes.x; ++column) {
+      vec2 place = start + ((float(column) + 0.5) / float(face.probes.x) - 0.5) * scale * face.along_x;
+      vec2 base = floor(place);
+      vec2 fraction = place - base;
+      ivec2 corner = ivec2(base) + whole;
+      for (int k = 0; k < 4; ++k) {
+        ivec2 q = corner + ivec2(k & 1, k >> 1);
+        if (any(lessThan(q, ivec2(0))) || any(greaterThanEqual(q, ivec2(stored.yz)))) continue;
         uint at = stored.x + uint(q.y) * stored.y + uint(q.x) - constants.piece_first;
         if (at >= constants.piece_size) continue;
+        vec2 w = mix(1.0 - fraction, fraction, equal(ivec2(k & 1, k >> 1), ivec2(1)));
         uvec2 packed = decal[at];
-        bilinear += w.x * w.y * vec4(unpackHalf2x16(packed.x), unpackHalf2x16(packed.y));
+        sum += w.x * w.y * vec4(unpackHalf2x16(packed.x), unpackHalf2x16(packed.y));
       }
     }
-    sum += (blend > 0.0 ? (coarser == 1 ? blend : 1.0 - blend) : 1.0) * bilinear;
   }
-  return sum / float(probes);
+  return sum / float(face.probes.x * face.probes.y);
 }
 
 vec3 to_linear(vec3 c) { return mix(c / 12.92, pow((c + 0.055) / 1.055, vec3(2.4)), greaterThan(c, vec3(0.04045))); }
@@ -234,7 +230,7 @@ void main() {
   if (constants.keep_samples != 0u && seed == texel)
     work_words[constants.work_samples + index] = floatBitsToUint(vec2(face.pixel) + place);
 
-  vec4 source = constants.opacity * sample_decal(face.pixel, place, face.axis, face.level, face.probes);
+  vec4 source = constants.opacity * sample_decal(face, place);
   uint sum = constants.work_sums + 2u * uint(index);
   if ((constants.piece_flags & piece_follows) != 0u)
     source += uintBitsToFloat(uvec4(work_words[sum], work_words[sum + 1u]));

@@ -61,11 +61,13 @@ struct FaceMap {
   vec2 value;
   vec2 dx;
   vec2 dy;
-  vec2 axis;  // The footprint's longer axis, pixels.
-  float level;
-  uint probes;
+  vec2 along_x;  // The sides of the footprint, pixels.
+  vec2 along_y;
+  uvec2 probes;  // Along each.
+  uint level;
   uint flags;
   uint first_point;  // Of the grid, where there is one. For normals, before it: a direction and its change by texel.
+  uint padding;
 };
 
 struct TransferConstants {
@@ -98,7 +100,7 @@ struct TransferConstants {
 
 #ifdef __cplusplus
 static_assert(sizeof(RasterJob) == 48 && offsetof(RasterJob, key) == 36);
-static_assert(sizeof(FaceMap) == 64 && offsetof(FaceMap, axis) == 40 && offsetof(FaceMap, level) == 48);
+static_assert(sizeof(FaceMap) == 80 && offsetof(FaceMap, along_x) == 40 && offsetof(FaceMap, probes) == 56);
 static_assert(sizeof(TransferConstants) == 120 && offsetof(TransferConstants, half_size) == 72);
 }  // namespace applique::shader
 #endif

@@ -127,9 +127,10 @@ shader::FaceMap to_face_map(const Transfer& transfer, std::size_t index, const P
   map.value = to_floats(value);
   map.dx = to_floats(face.map.dx);
   map.dy = to_floats(face.map.dy);
-  map.axis = to_floats(face.footprint.axis);
-  map.level = static_cast<float>(face.footprint.level);
-  map.probes = static_cast<std::uint32_t>(face.footprint.probes);
+  map.along_x = to_floats(face.footprint.along_x);
+  map.along_y = to_floats(face.footprint.along_y);
+  map.level = static_cast<std::uint32_t>(face.footprint.level);
+  for (std::size_t k = 0; k < 2; ++k) map.probes[k] = static_cast<std::uint32_t>(face.footprint.probes[k]);
   map.flags = face.clamped ? shader::face_clamped : 0;
   if (transfer.encoding == Encoding::normal)
     for (const auto& along : {face.along.value, face.along.dx, face.along.dy})
@@ -273,17 +274,17 @@ Result<void> GpuTransfer::run_tile(Run& run, std::uint32_t sheet, const TexelRec
   std::vector<shader::FaceMap> faces;
   faces.reserve(plan.placements.size());
   std::vector<shader::vec2> points;
-  double finest = shader::max_levels;
+  std::size_t finest = shader::max_levels;
   bool warped = false;
   for (const Placement& placement : plan.placements) {
     const RefinedFace& refined = run.refined[placement.face];
     const PlacedFace face = place_face(transfer, placement, refined.cells);
     faces.push_back(to_face_map(transfer, placement.face, face, refined, points));
-    finest = std::min(finest, face.footprint.level);
+    finest = std::min(finest, static_cast<std::size_t>(face.footprint.level));
     warped |= face.warped && refined.cells == 0;
   }
   const std::size_t piece_texels = options_.max_buffer_bytes / (4 * sizeof(std::uint16_t));
-  APPLIQUE_CHECK(run.upload_decal(device, static_cast<std::size_t>(finest), piece_texels));
+  APPLIQUE_CHECK(run.upload_decal(device, finest, piece_texels));
   // What does not fit into the device's buffers is done in smaller pieces.
   const std::size_t work_texels = static_cast<std::size_t>(work.width) * work.height;
   const std::size_t region_texels = static_cast<std::size_t>(region.width) * region.height;

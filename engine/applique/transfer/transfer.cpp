@@ -94,14 +94,17 @@ void add_bilinear(const DecalImage& image, std::size_t level, Pixel pixel, doubl
 }
 
 Colour sample_decal(const DecalImage& image, Pixel pixel, const Footprint& footprint) {
-  const auto finer = static_cast<std::size_t>(footprint.level);
-  const double blend = footprint.level - static_cast<double>(finer);
+  const auto [columns, rows] = footprint.probes;
   Colour sum{};
-  for (int i = 0; i < footprint.probes; ++i) {
-    const double along = (i + 0.5) / footprint.probes - 0.5;
-    const Pixel probe = {pixel.x + along * footprint.axis[0], pixel.y + along * footprint.axis[1]};
-    add_bilinear(image, finer, probe, (1 - blend) / footprint.probes, sum);
-    if (blend > 0) add_bilinear(image, finer + 1, probe, blend / footprint.probes, sum);
+  for (int row = 0; row < rows; ++row) {
+    const double y = (row + 0.5) / rows - 0.5;
+    for (int column = 0; column < columns; ++column) {
+      const double x = (column + 0.5) / columns - 0.5;
+      add_bilinear(image, static_cast<std::size_t>(footprint.level),
+                   {pixel.x + x * footprint.along_x[0] + y * footprint.along_y[0],
+                    pixel.y + x * footprint.along_x[1] + y * footprint.along_y[1]},
+                   1.0 / (columns * rows), sum);
+    }
   }
   return sum;
 }
