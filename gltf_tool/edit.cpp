@@ -172,6 +172,28 @@ void declare(Document& document, const char* list, const char* extension) {
   if (std::find(names.begin(), names.end(), extension) == names.end()) names.push_back(extension);
 }
 
+bool is_webp(const Json& image) {
+  const auto* media_type = find(image, {"mimeType"});
+  const auto* uri = find(image, {"uri"});
+  return (media_type != nullptr && *media_type == "image/webp") ||
+         (uri != nullptr && uri->get<std::string>().ends_with(".webp"));
+}
+
+/// Takes EXT_texture_webp off the lists of extensions when the last WebP is gone, so that every viewer may
+/// show the model.
+void forget_webp(Document& document) {
+  const auto& images = document.json["images"];
+  if (std::any_of(images.begin(), images.end(), is_webp)) return;
+  for (const auto& texture : document.json["textures"])
+    if (find(texture, {"extensions", "EXT_texture_webp"}) != nullptr) return;
+  for (const char* list : {"extensionsUsed", "extensionsRequired"}) {
+    if (!document.json.contains(list)) continue;
+    auto& names = document.json[list];
+    names.erase(std::remove(names.begin(), names.end(), "EXT_texture_webp"), names.end());
+    if (names.empty()) document.json.erase(list);
+  }
+}
+
 /// A textureInfo and a texture, both without what they show, over the coordinates and with the sampler of the
 /// base colour's.
 std::pair<Json, Json> like_base_colour(const Document& document, const Json& material) {
@@ -214,6 +236,7 @@ void set_texture_image(Document& document, std::size_t texture, std::span<const 
   replace_image(document, own.front(), bytes, name);
   show_image(document, texture, own.front());
   for (std::size_t i = own.size(); i-- > 1;) remove_image(document, own[i]);
+  forget_webp(document);
 }
 
 }  // namespace
@@ -281,8 +304,7 @@ void show_image(Document& document, std::size_t texture, std::size_t image) {
   auto& entry = document.json["textures"][texture];
   if (entry.contains("extensions"))
     for (const char* extension : source_extensions) entry["extensions"].erase(extension);
-  const auto* media_type = find(document.json["images"][image], {"mimeType"});
-  if (media_type != nullptr && *media_type == "image/webp") {
+  if (is_webp(document.json["images"][image])) {
     entry.erase("source");
     entry["extensions"]["EXT_texture_webp"]["source"] = image;
     declare(document, "extensionsUsed", "EXT_texture_webp");

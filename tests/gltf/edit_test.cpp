@@ -135,6 +135,20 @@ TEST(IsolateMaterials, GivesTwoTouchedInstancesTheirOwnMaterials) {
   EXPECT_EQ(document.json["materials"].size(), 2u) << "the first instance keeps the original";
 }
 
+TEST(IsolateMaterials, LeavesTheMeshToAllThatShareAChange) {
+  Document document = make_document({0, 0, 0}, {{0}}, 1);
+  // One part for the first node and the last together, one for the second alone.
+  const std::vector<PartKey> parts = {{0, 0, 0, true}, {1, 0, 0, false}};
+  const auto materials = isolate_materials(document, parts);
+  EXPECT_EQ(document.json["nodes"][0]["mesh"], 0);
+  EXPECT_EQ(document.json["nodes"][1]["mesh"], 1);
+  EXPECT_EQ(document.json["nodes"][2]["mesh"], 0);
+  EXPECT_NE(materials[0], materials[1]);
+  EXPECT_EQ(material_at(document, 2, 0), materials[0]);
+  EXPECT_EQ(material_at(document, 1, 0), materials[1]);
+  EXPECT_EQ(document.json["materials"].size(), 2u);
+}
+
 TEST(IsolateMaterials, CountsVariantsAsUses) {
   Document document = make_document({0}, {{0}}, 1);
   auto& primitive = document.json["meshes"][0]["primitives"][0];
@@ -191,6 +205,25 @@ TEST(SetBaseColourImage, GivesATextureToAMaterialWithoutOne) {
   const Model model = decode_model(document).value();
   EXPECT_EQ(model.materials[0].base_colour_factor, (std::array<double, 4>{1, 1, 1, 1}));
   EXPECT_EQ(read_image_bytes(model.document, model.materials[0].image.value()).value(), png);
+}
+
+TEST(SetBaseColourImage, ShowsAWebpByItsExtension) {
+  Document document = make_document({0}, {{0}}, 1);
+  const auto webp = encode_webp(make_image(8, 8, teal), 100).value();
+  for (int times = 0; times < 2; ++times) {
+    set_slot_image(document, 0, MaterialSlot::base_color, webp);
+    const auto image =
+        document.json["textures"][0]["extensions"]["EXT_texture_webp"]["source"].get<std::size_t>();
+    EXPECT_EQ(read_image_bytes(document, image).value(), webp);
+    EXPECT_EQ(document.json["images"][image]["mimeType"], "image/webp");
+    EXPECT_FALSE(document.json["textures"][0].contains("source"));
+    EXPECT_EQ(document.json["extensionsRequired"], Json::array({"EXT_texture_webp"}));
+  }
+  set_slot_image(document, 0, MaterialSlot::base_color, make_png(8, teal));
+  EXPECT_FALSE(document.json["textures"][0].contains("extensions"));
+  EXPECT_EQ(document.json["textures"][0]["source"], 0);
+  for (const char* list : {"extensionsUsed", "extensionsRequired"})
+    EXPECT_FALSE(document.json.contains(list)) << "no WebP is left";
 }
 
 TEST(SetBaseColourImage, WinsOverAWebpOfTheTexture) {

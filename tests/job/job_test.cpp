@@ -62,7 +62,7 @@ TEST_F(JobTest, ReadsEveryField) {
           { "image": [7, 8], "triangle": 9, "barycentric": [0.2, 0.3, 0.5] },
           { "image": [9, 1], "ray": { "origin": [0, 0, 5], "direction": [0, 0, -1] } } ],
         "nodes": ["Body", 2], "materials": [0], "size": 1.5, "up": [0, 1, 0],
-        "opacity": 0.25, "blend": "multiply", "output": "overlay", "offset": 0.01,
+        "opacity": 0.25, "blend": "multiply", "output": "overlay", "offset": 0.01, "instance": "all",
         "method": "paper", "energy": "conformal" },
       { "name": "b", "image": "/elsewhere/b.png", "region": { "alpha": 0.25 },
         "features": [ { "image": [1, 2], "position": [1, 2, 3] } ] },
@@ -95,6 +95,7 @@ TEST_F(JobTest, ReadsEveryField) {
   ASSERT_EQ(a.layers.size(), 1U);
   EXPECT_EQ(a.layers[0].blend, BlendMode::multiply);
   EXPECT_EQ(a.output, DecalOutput::overlay);
+  EXPECT_EQ(a.instance, Instance::all);
   EXPECT_EQ(a.offset, 0.01);
   EXPECT_EQ(a.method, Method::paper);
   EXPECT_EQ(a.energy, Energy::conformal);
@@ -138,6 +139,7 @@ TEST_F(JobTest, LeavesOutWhatMayBeLeftOut) {
   ASSERT_EQ(decal.layers.size(), 1U);
   EXPECT_EQ(decal.layers[0].blend, BlendMode::normal);
   EXPECT_EQ(decal.output, DecalOutput::bake);
+  EXPECT_EQ(decal.instance, Instance::only_this);
   EXPECT_EQ(decal.method, Method::applique);
   EXPECT_EQ(decal.energy, Energy::isometric);
 }
@@ -252,6 +254,10 @@ INSTANTIATE_TEST_SUITE_P(
               "alpha, rectangle"},
         Fault{"/decals/0/features", "[]",
               "job.json: /decals/0/features: found [], expected a list of at least one feature"},
+        Fault{
+            "/decals/0/instance", "\"some\"",
+            "job.json: /decals/0/instance: found \"some\", expected \"this\" (default) or \"all\", whether a "
+            "baked decal is seen where it lies only or on every node that shows the mesh"},
         Fault{"/decals/0/features/0/image", "[1, 2, 3]",
               "job.json: /decals/0/features/0/image: found [1,2,3], expected two numbers [x, y], in pixels "
               "from the image's top-left corner, y down"},
