@@ -6,10 +6,11 @@
 
 #include <fmt/format.h>
 
+#include "attach_overlay.h"
 #include "bake_plan.h"
 #include "edit.h"
 #include "overlay.h"
-#include "overlay_mesh.h"
+#include "overlay_layout.h"
 
 namespace applique {
 namespace {
@@ -86,19 +87,14 @@ void warn_of_density(SolvedDecal& decal, const std::optional<TexelDensity>& dens
                    decal.job.name, density->texels_per_pixel)});
 }
 
-void warn_of_motion(SolvedDecal& decal, const SolvedJob& job) {
-  const auto& json = job.model.document.json;
-  for (const PatchFace& face : decal.map.patch.faces) {
-    if (!face.mesh_face.valid()) continue;
-    const auto node = job.model.parts[decal.surface->source(face.mesh_face).part].node;
-    if (!json.at("nodes").at(node).contains("skin") && !json.contains("animations")) continue;
-    decal.warnings.push_back(
-        {"overlay_static",
-         fmt::format("decal '{}': the overlay lies on the model at rest and does not follow its "
-                     "animation; bake the decal if the model moves",
-                     decal.job.name)});
-    return;
-  }
+void warn_of_motion(SolvedDecal& decal, const Document& document, const OverlayMesh& overlay) {
+  if (overlay.node || !document.json.contains("animations")) return;
+  decal.warnings.push_back(
+      {"overlay_static",
+       fmt::format(
+           "decal '{}': a node under it is flat at rest (its transform has no inverse), so the overlay "
+           "there stays at the rest pose and does not follow the model's animation; bake the decal",
+           decal.job.name)});
 }
 
 /// Transfers every decal into its textures, in the order of the job.
@@ -155,15 +151,19 @@ Result<void> add_overlays(SolvedJob& job, Document& document) {
   for (SolvedDecal& decal : job.decals) {
     if (decal.job.output != DecalOutput::overlay) continue;
     const Stopwatch watch;
-    const OverlayMesh mesh =
-        build_overlay_mesh(job.model, decal, decal.job.offset.value_or(default_offset(job.model)));
+    const auto [mesh, picture] =
+        lay_out_overlay(job.model, decal, decal.job.offset.value_or(default_offset(job.model)));
     if (mesh.triangles.empty())
       return fail(ErrorCode::not_solved,
                   fmt::format("decal '{}': none of the image lies on the surface", decal.job.name));
-    APPLIQUE_TRY(const auto png, encode_png(overlay_image(decal)));
-    add_overlay(document, decal.job.name, mesh, png);
+    APPLIQUE_TRY(const auto overlays, attach_overlay(job.model, decal, mesh));
+    APPLIQUE_TRY(const auto png, encode_png(picture));
+    const std::size_t material = add_overlay_material(document, decal.job.name, png);
+    for (const OverlayMesh& overlay : overlays) {
+      add_overlay(document, decal.job.name, overlay, material);
+      warn_of_motion(decal, document, overlay);
+    }
     decal.times.add("overlay", watch.seconds());
-    warn_of_motion(decal, job);
   }
   return {};
 }

@@ -56,7 +56,7 @@ class OverlayMeshTest : public testing::Test {
 /// Largest distance, in pixels, of the mesh's texture coordinates from the exact map, which is told
 /// `influence(plane, sheet)`. The mesh's offset is 0.01.
 template <class Influence>
-double farthest_from_exact(const OverlayMesh& mesh, const SolvedDecal& decal, const Influence& influence) {
+double farthest_from_exact(const DecalMesh& mesh, const SolvedDecal& decal, const Influence& influence) {
   const DecalMap& map = decal.map;
   const ImageFrame& frame = decal.region.frame();
   // The embedding of a plane is a similarity: two points of a face give it.
@@ -92,11 +92,11 @@ double farthest_from_exact(const OverlayMesh& mesh, const SolvedDecal& decal, co
 }
 
 TEST_F(OverlayMeshTest, LinearTextureCoordinatesFollowTheExactMap) {
-  const OverlayMesh mesh = build_overlay_mesh(job_.model, decal(), 0.01);
+  const DecalMesh mesh = build_overlay_mesh(job_.model, decal(), 0.01);
   const auto none = [](Vec2, long) { return std::vector<double>(); };
   EXPECT_LT(farthest_from_exact(mesh, decal(), none), 0.25);
   // The test has teeth: without dividing, it is much more.
-  const OverlayMesh coarse = build_overlay_mesh(job_.model, decal(), 0, 1000);
+  const DecalMesh coarse = build_overlay_mesh(job_.model, decal(), 0, 1000);
   EXPECT_GT(mesh.triangles.size(), 4 * coarse.triangles.size());
 }
 
@@ -130,7 +130,7 @@ TEST_F(OverlayMeshTest, SheetsLieOverOneAnotherFromTheBottomUp) {
     map.image[v] = map.warp(map.plane[v], at);
   }
 
-  const OverlayMesh mesh = build_overlay_mesh(job_.model, decal(), 0.01);
+  const DecalMesh mesh = build_overlay_mesh(job_.model, decal(), 0.01);
   std::vector<double> heights;
   for (const auto& t : mesh.triangles)
     for (const std::uint32_t v : t) heights.push_back(mesh.positions[v].z());
@@ -145,7 +145,7 @@ TEST_F(OverlayMeshTest, SheetsLieOverOneAnotherFromTheBottomUp) {
 TEST_F(OverlayMeshTest, HasNoCracks) {
   // Nor where an upper sheet begins.
   job_.decals.front().map.sheet[PatchFaceId(0)] = 1;
-  const OverlayMesh mesh = build_overlay_mesh(job_.model, decal(), 0.01);
+  const DecalMesh mesh = build_overlay_mesh(job_.model, decal(), 0.01);
   std::map<std::pair<std::uint32_t, std::uint32_t>, int> edges;
   for (const auto& t : mesh.triangles)
     for (std::size_t k = 0; k < 3; ++k) {
@@ -165,7 +165,7 @@ TEST_F(OverlayMeshTest, HasNoCracks) {
 }
 
 TEST_F(OverlayMeshTest, LiesAboveTheSurfaceAndInsideTheImage) {
-  const OverlayMesh mesh = build_overlay_mesh(job_.model, decal(), 0.01);
+  const DecalMesh mesh = build_overlay_mesh(job_.model, decal(), 0.01);
   for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
     EXPECT_NEAR(mesh.positions[i].z(), 0.01, 1e-12);
     EXPECT_NEAR(mesh.normals[i].z(), 1, 1e-12);
