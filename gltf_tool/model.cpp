@@ -70,8 +70,10 @@ class PartReader {
       }
     }
     if (parts.empty())
-      return fail(ErrorCode::model_invalid,
-                  fmt::format("'{}': its default scene shows no triangles", document_.name));
+      return fail(
+          ErrorCode::model_invalid,
+          fmt::format("'{}': its default scene shows no triangles, and points and lines cannot carry a decal",
+                      document_.name));
     return parts;
   }
 

@@ -75,7 +75,7 @@ void read_report(const std::filesystem::path& path, ModelRow& row) {
 
 ModelRow bake_model(const std::string& command, const std::filesystem::path& model,
                     const std::filesystem::path& image, const std::filesystem::path& stem,
-                    const json& decal) {
+                    const DecalWish& wish) {
   const auto beside = [&](const char* suffix) { return stem.string() + suffix; };
   ModelRow row;
   std::string said;
@@ -90,7 +90,10 @@ ModelRow bake_model(const std::string& command, const std::filesystem::path& mod
     return row;
   }
   for (const ModelPart& part : loaded->parts) row.triangles += part.triangles.size();
-  std::ofstream(beside(".json")) << job_at(find_place(*loaded), model, image, image_size, decal).dump(1);
+  DecalPlace place = find_place(*loaded);
+  place.size *= wish.larger;
+  std::ofstream(beside(".json"))
+      << job_at(place, model, image, image_size, json::parse(wish.members)).dump(1);
   row.bake_status =
       run(fmt::format("'{0}' -q bake '{1}.json' -o '{1}.glb' --preview '{1}.png' --report '{1}.report.json'",
                       command, stem.string()),
@@ -106,7 +109,7 @@ ModelRow bake_model(const std::string& command, const std::filesystem::path& mod
 
 std::vector<ModelRow> bake_every_model(const std::filesystem::path& command,
                                        const std::filesystem::path& data, const std::filesystem::path& folder,
-                                       const std::string& decal) {
+                                       const DecalWish& wish) {
   std::filesystem::create_directories(folder);
   const std::filesystem::path image = std::filesystem::absolute(folder) / "decal.png";
   const auto png = encode_png(make_chequers()).value();
@@ -118,7 +121,7 @@ std::vector<ModelRow> bake_every_model(const std::filesystem::path& command,
       const std::string name = path.lexically_relative(data).string();
       std::string stem = name.substr(0, name.find_last_of('.'));
       std::replace(stem.begin(), stem.end(), '/', '-');
-      rows.push_back(bake_model(command.string(), path, image, folder / stem, json::parse(decal)));
+      rows.push_back(bake_model(command.string(), path, image, folder / stem, wish));
       rows.back().model = name;
     }
   return rows;

@@ -23,12 +23,17 @@ struct ModelRow {
   [[nodiscard]] bool solved() const { return bake_status == 0; }
 };
 
+/// What every decal says besides its place.
+struct DecalWish {
+  std::string members = "{}";  ///< JSON.
+  double larger = 1;           ///< Times the size that fits on the piece.
+};
+
 /// Puts a decal on the largest smooth piece of every model below `data`/gltf and `data`/derived/gltf, by the
-/// program `command`. Jobs, models, previews and reports go to `folder`. `decal` is what every decal says
-/// besides its place, as JSON text.
+/// program `command`. Jobs, models, previews and reports go to `folder`.
 std::vector<ModelRow> bake_every_model(const std::filesystem::path& command,
                                        const std::filesystem::path& data, const std::filesystem::path& folder,
-                                       const std::string& decal = "{}");
+                                       const DecalWish& wish = {});
 
 /// The rows as a Markdown table.
 std::string table_of(const std::vector<ModelRow>& rows);
