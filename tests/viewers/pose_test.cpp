@@ -21,7 +21,9 @@ constexpr int image_size = 64;
 
 /// What tests/viewers/pose.mjs measures on a model.
 json pose(const std::filesystem::path& model) {
-  const std::string command = "node '" APPLIQUE_POSE_SCRIPT "' '" APPLIQUE_THREE "' '" + model.string() + "'";
+  const std::string command = "node '" APPLIQUE_VIEWER_SCRIPTS "/pose.mjs' '" APPLIQUE_NODE_MODULES
+                              "/three' '" +
+                              model.string() + "'";
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> pipe(popen(command.c_str(), "r"), pclose);
   std::string text;
   for (int c = std::fgetc(pipe.get()); c != EOF; c = std::fgetc(pipe.get()))
@@ -59,7 +61,7 @@ class Posed : public testing::TestWithParam<Case> {
 
   void SetUp() override {
     if (test_data().empty()) GTEST_SKIP() << no_test_data;
-    if (!std::filesystem::exists(APPLIQUE_THREE))
+    if (!std::filesystem::exists(APPLIQUE_NODE_MODULES "/three"))
       GTEST_SKIP() << "three.js is not installed (./dev test installs it)";
   }
 
