@@ -53,9 +53,31 @@ std::array<double, 2> UvMapping::apply(const std::array<double, 2>& uv) const {
   return {offset[0] + c * u + s * v, offset[1] - s * u + c * v};
 }
 
-UvMapping read_uv_mapping(const Json& material) {
+const char* name_of(MaterialSlot slot) {
+  constexpr std::array names = {"baseColor", "metallicRoughness", "normal", "occlusion", "emissive"};
+  return names[static_cast<std::size_t>(slot)];
+}
+
+const Json* find_texture_info(const Json& material, MaterialSlot slot) {
+  switch (slot) {
+    case MaterialSlot::base_color:
+      return find(material, {"pbrMetallicRoughness", "baseColorTexture"});
+    case MaterialSlot::metallic_roughness:
+      return find(material, {"pbrMetallicRoughness", "metallicRoughnessTexture"});
+    case MaterialSlot::normal:
+      return find(material, {"normalTexture"});
+    case MaterialSlot::occlusion:
+      return find(material, {"occlusionTexture"});
+    case MaterialSlot::emissive:
+      return find(material, {"emissiveTexture"});
+  }
+  return nullptr;
+}
+
+UvMapping read_uv_mapping(const Json& material, MaterialSlot slot) {
   UvMapping mapping;
-  const auto* texture = find(material, {"pbrMetallicRoughness", "baseColorTexture"});
+  const auto* texture = find_texture_info(material, slot);
+  if (texture == nullptr) texture = find_texture_info(material, MaterialSlot::base_color);
   if (texture == nullptr) return mapping;
   mapping.set = index_of(*texture, "texCoord").value_or(0);
   if (const auto* transform = find(*texture, {"extensions", "KHR_texture_transform"})) {
@@ -65,6 +87,25 @@ UvMapping read_uv_mapping(const Json& material) {
     mapping.rotation = number_or(*transform, "rotation", 0);
   }
   return mapping;
+}
+
+MaterialTexture read_texture(const Document& document, const Json& material, MaterialSlot slot) {
+  MaterialTexture result;
+  const auto* info = find_texture_info(material, slot);
+  if (info == nullptr) {
+    if (slot == MaterialSlot::base_color) return result;
+    result = read_texture(document, material, MaterialSlot::base_color);
+    result.texture = result.image = std::nullopt;
+    return result;
+  }
+  result.texture = index_of(*info, "index");
+  const auto& texture = document.json["textures"][*result.texture];
+  result.image = image_of(texture);
+  if (const auto sampler = index_of(texture, "sampler")) {
+    result.wrap_u = read_wrap(document.json["samplers"][*sampler], "wrapS");
+    result.wrap_v = read_wrap(document.json["samplers"][*sampler], "wrapT");
+  }
+  return result;
 }
 
 ModelMaterial read_material(const Document& document, const Json& entry) {
@@ -78,15 +119,11 @@ ModelMaterial read_material(const Document& document, const Json& entry) {
   material.double_sided = double_sided != nullptr && *double_sided == true;
   material.base_colour_factor =
       numbers_or(find(entry, {"pbrMetallicRoughness", "baseColorFactor"}), material.base_colour_factor);
-  const auto* base = find(entry, {"pbrMetallicRoughness", "baseColorTexture"});
-  if (base == nullptr) return material;
-  material.texture = index_of(*base, "index");
-  const auto& texture = document.json["textures"][*material.texture];
-  material.image = image_of(texture);
-  if (const auto sampler = index_of(texture, "sampler")) {
-    material.wrap_u = read_wrap(document.json["samplers"][*sampler], "wrapS");
-    material.wrap_v = read_wrap(document.json["samplers"][*sampler], "wrapT");
-  }
+  const MaterialTexture base = read_texture(document, entry, MaterialSlot::base_color);
+  material.texture = base.texture;
+  material.image = base.image;
+  material.wrap_u = base.wrap_u;
+  material.wrap_v = base.wrap_v;
   return material;
 }
 

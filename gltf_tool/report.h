@@ -11,12 +11,13 @@
 
 namespace applique {
 
-/// What a bake did to one base-colour texture.
+/// What a bake did to one texture.
 struct TextureReport {
   std::string material;  ///< Name of its material.
+  std::string slot;      ///< "baseColor", …
   int width = 0;         ///< Texels.
   int height = 0;        ///< Texels.
-  bool created = false;  ///< The material had no base-colour texture before.
+  bool created = false;  ///< The material had no texture there before.
   std::uint64_t covered_texels = 0;
   std::uint64_t gutter_texels = 0;
   std::uint64_t shared_texels = 0;
