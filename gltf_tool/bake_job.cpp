@@ -188,7 +188,7 @@ Result<void> add_overlays(SolvedJob& job, Document& document) {
   for (SolvedDecal& decal : job.decals) {
     if (decal.job.output != DecalOutput::overlay) continue;
     const Stopwatch watch;
-    const auto [mesh, picture] =
+    const auto [mesh, picture, divided_skin] =
         lay_out_overlay(job.model, decal, decal.job.offset.value_or(default_offset(job.model)));
     if (mesh.triangles.empty())
       return fail(ErrorCode::not_solved,
@@ -200,6 +200,14 @@ Result<void> add_overlays(SolvedJob& job, Document& document) {
       add_overlay(document, decal.job.name, overlay, material);
       warn_of_motion(decal, document, overlay);
     }
+    if (divided_skin)
+      decal.warnings.push_back(
+          {"overlay_follows_nearly",
+           fmt::format(
+               "decal '{}': the image overlaps itself on a skin, where an overlay follows the model's "
+               "poses exactly only at the corners of its triangles; bake the decal, or give the overlay "
+               "a larger \"offset\"",
+               decal.job.name)});
     decal.times.add("overlay", watch.seconds());
   }
   return {};

@@ -44,7 +44,7 @@ Chart find_chart(const SolvedDecal& decal, const DecalMesh& divided) {
     box.extend(in_pixels(decal.region.frame(), place));
   }
   // Finer than the image, so that bending it costs no detail, within reason.
-  constexpr double finer = 2, large = 4096, largest = 16384;
+  constexpr double finer = 2, large = 2048, largest = 8192;
   const double longest = box.sizes().maxCoeff();
   Chart chart;
   chart.density = std::min({finer, std::max(1.0, large / longest), largest / longest});
@@ -114,20 +114,24 @@ void lay_into(DecalMesh& mesh, const ImageFrame& frame, const IdVector<PatchVert
 OverlayLayout lay_out_overlay(const Model& model, const SolvedDecal& decal, double offset) {
   DecalMesh divided = build_overlay_mesh(model, decal, offset);
   Image image = overlay_image(decal);
-  if (divided.triangles.empty() || decal.map.groups > 1 || !lies_on_skin(model, decal))
-    return {std::move(divided), std::move(image)};
+  const bool on_skin = lies_on_skin(model, decal);
+  if (divided.triangles.empty() || decal.map.groups > 1 || !on_skin)
+    return {std::move(divided), std::move(image), on_skin};
   const ImageFrame& frame = decal.region.frame();
   DecalMesh whole = build_whole_mesh(model, decal, offset);
   if (is_linear(model, decal)) {
     const Chart chart = frame_image(image);
     lay_into(whole, frame, decal.map.image, chart);
-    return {std::move(whole), draw(chart, image, [](const Eigen::Vector2d& place) { return place; })};
+    return {std::move(whole), draw(chart, image, [](const Eigen::Vector2d& place) { return place; }), false};
   }
   const Chart chart = find_chart(decal, divided);
   lay_into(whole, frame, decal.map.plane, chart);
-  return {std::move(whole), draw(chart, image, [&](const Eigen::Vector2d& place) {
-            return in_pixels(frame, decal.map.warp(frame.to_plane({place.x(), place.y()})));
-          })};
+  return {std::move(whole),
+          draw(chart, image,
+               [&](const Eigen::Vector2d& place) {
+                 return in_pixels(frame, decal.map.warp(frame.to_plane({place.x(), place.y()})));
+               }),
+          false};
 }
 
 }  // namespace applique

@@ -12,6 +12,8 @@ namespace applique {
 struct OverlayLayout {
   DecalMesh mesh;
   Image picture;
+  bool divided_skin =
+      false;  ///< Between the corners of a skin's triangles it follows the surface only nearly.
 };
 
 /// Lays a decal out as an overlay, `offset` (scene units, >= 0) above the surface.

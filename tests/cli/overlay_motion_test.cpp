@@ -55,6 +55,42 @@ void add_skin(Document& document, const SmallMesh& plane) {
   document.json["nodes"][0]["skin"] = 0;
 }
 
+/// Six joints in two sets, on a node that mirrors.
+void add_mirrored_skin(Document& document, const SmallMesh& plane) {
+  constexpr std::size_t joints = 6, slots = 8;
+  std::vector<std::uint8_t> index[2];
+  std::vector<float> weight[2];
+  for (const Vec3& p : plane.positions) {
+    std::array<double, slots> shares = {};
+    double sum = 0;
+    for (std::size_t j = 0; j < joints; ++j) {
+      const double away = p.x() - (-1 + 2.0 * double(j) / (joints - 1));
+      sum += shares[j] = std::exp(-2 * away * away);
+    }
+    for (std::size_t j = 0; j < slots; ++j) {
+      index[j / 4].push_back(j < joints ? static_cast<std::uint8_t>(j) : 0);
+      weight[j / 4].push_back(static_cast<float>(shares[j] / sum));
+    }
+  }
+  const std::size_t count = plane.positions.size();
+  auto& attributes = document.json["meshes"][0]["primitives"][0]["attributes"];
+  for (const int set : {0, 1}) {
+    attributes["JOINTS_" + std::to_string(set)] = add_accessor(document, index[set], 5121, "VEC4", count);
+    attributes["WEIGHTS_" + std::to_string(set)] = add_accessor(document, weight[set], 5126, "VEC4", count);
+  }
+  Document::Json nodes = {0};
+  Document::Json list = Document::Json::array();
+  for (std::size_t j = 1; j <= joints; ++j) {
+    document.json["nodes"].push_back({{"name", "joint"}});
+    nodes.push_back(j);
+    list.push_back(j);
+  }
+  document.json["scenes"][0]["nodes"] = nodes;
+  document.json["skins"] = {{{"joints", list}}};
+  document.json["nodes"][0]["skin"] = 0;
+  document.json["nodes"][0]["scale"] = {-1, 1, 1};
+}
+
 /// A hill as a morph target, with an animation that raises it.
 void add_hill(Document& document, const SmallMesh& plane) {
   std::vector<float> moves;
@@ -134,7 +170,7 @@ class OverlayMotion : public testing::Test {
   }
 
   /// Bakes the overlay, bent so that no similarity fits; `offset` above the surface.
-  Document bake(double offset = 0, const std::string& arguments = "") {
+  Document bake(double offset = 0, const std::string& arguments = "", bool mirrored = false) {
     const auto pin = [](double x, double y, double px, double py) {
       return json(
           {{"image", {x * image_size, y * image_size}}, {"position", {px, py, 0}}, {"max_distance", 1}});
@@ -147,6 +183,7 @@ class OverlayMotion : public testing::Test {
                       {"image", "image.png"},
                       {"output", "overlay"},
                       {"offset", offset},
+                      {"mirrored", mirrored},
                       {"features",
                        {pin(0.25, 0.25, -0.5, 0.4), pin(0.75, 0.25, 0.45, 0.35), pin(0.5, 0.5, 0.08, -0.03),
                         pin(0.25, 0.75, -0.4, -0.4), pin(0.75, 0.75, 0.4, -0.5)}}}}}});
@@ -174,6 +211,30 @@ TEST_F(OverlayMotion, FollowsASkin) {
     const auto [distance, vertices] = distance_from_surface(document);
     EXPECT_LT(distance, 1e-6);
     EXPECT_GT(vertices, 8u);
+  }
+}
+
+TEST_F(OverlayMotion, FollowsManyJointsOnAMirroredNode) {
+  write_model(add_mirrored_skin);
+  // Seen from behind, where the outside is.
+  Document document = bake(0, "", true);
+  const auto overlays = overlays_of(document);
+  ASSERT_EQ(overlays.size(), 1u);
+  const auto mesh = document.json["nodes"][overlays[0]]["mesh"].get<std::size_t>();
+  const auto& attributes = document.json["meshes"][mesh]["primitives"][0]["attributes"];
+  EXPECT_TRUE(attributes.contains("JOINTS_1"));
+  EXPECT_FALSE(attributes.contains("JOINTS_2"));
+  EXPECT_LT(distance_from_surface(document).first, 1e-6);
+  const Model rest = decode_model(document).value();
+  for (const ModelPart& part : rest.parts)
+    for (const auto& t : part.triangles)
+      EXPECT_LT((part.positions[t[1]] - part.positions[t[0]])
+                    .cross(part.positions[t[2]] - part.positions[t[0]])
+                    .z(),
+                0);
+  for (const std::size_t joint : {2, 4, 6}) {
+    document.json["nodes"][joint]["rotation"] = turn_about_y(10.0 * double(joint));
+    EXPECT_LT(distance_from_surface(document).first, 1e-6);
   }
 }
 
