@@ -275,6 +275,24 @@ TEST_F(OverlayMotion, FollowsMorphTargets) {
   }
 }
 
+TEST_F(OverlayMotion, IsDrivenByPointersAsWell) {
+  const auto channel = [](const std::string& pointer) {
+    return Document::Json::parse(
+        R"({"sampler": 0, "target": {"path": "pointer", "extensions": {"KHR_animation_pointer": {"pointer": ")" +
+        pointer + "\"}}}}");
+  };
+  write_model([&](Document& document, const SmallMesh& plane) {
+    add_hill(document, plane);
+    document.json["extensionsUsed"] = {"KHR_animation_pointer"};
+    document.json["animations"][0]["channels"] = {channel("/nodes/0/weights/0"), channel("/nodes/0/scale"),
+                                                  channel("/nodes/01/weights")};
+  });
+  const Document document = bake();
+  const auto& channels = document.json["animations"][0]["channels"];
+  ASSERT_EQ(channels.size(), 4u);
+  EXPECT_EQ(channels[3], channel("/nodes/" + std::to_string(overlays_of(document).at(0)) + "/weights/0"));
+}
+
 TEST_F(OverlayMotion, StaysAboveAMorphTarget) {
   write_model(add_hill);
   Document document = bake(0.01);
