@@ -24,6 +24,9 @@ constexpr Pixel chin{512, 962};
 /// A crest, shield with star and laurel, 768 x 768, transparent around.
 Image draw_emblem();
 
+/// A painting's relief as a normal map, y up: raised from its outline on, bright paint more than dark.
+Image draw_relief(const Image& painting);
+
 /// A bottle's label, 1024 x 512, opaque but for its notched corners.
 Image draw_label();
 

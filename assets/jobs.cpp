@@ -31,7 +31,9 @@ Result<void> write_jobs(const std::filesystem::path& folder) {
       feature({384, 60}, at("emblem_top")),
       feature({384, 692}, at("emblem_bottom")),
   });
-  APPLIQUE_CHECK(write_job(folder / "bust-emblem.json", "bust.glb", "emblem", emblem));
+  APPLIQUE_CHECK(
+      write_job(folder / "bust-emblem.json", "bust.glb", "emblem", emblem,
+                {{"layers", {{"normal", "emblem-relief.png"}, {"metallic", 0.4}, {"roughness", 0.35}}}}));
 
   // The label goes on without stretch: 1024 pixels are 1.4 units along the body.
   constexpr double scale = 1.4 / 1024;

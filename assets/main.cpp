@@ -45,7 +45,9 @@ Result<void> generate(const std::filesystem::path& folder, bool previews, bool g
   APPLIQUE_TRY(const Model bottle, make_bottle(texture_size));
   APPLIQUE_CHECK(write_glb(folder / "bottle.glb", bottle.mesh, bottle.texture, {"bottle", 0.2}));
   APPLIQUE_CHECK(write_image(folder / "mask.png", draw_mask()));
-  APPLIQUE_CHECK(write_image(folder / "emblem.png", draw_emblem()));
+  const Image emblem = draw_emblem();
+  APPLIQUE_CHECK(write_image(folder / "emblem.png", emblem));
+  APPLIQUE_CHECK(write_image(folder / "emblem-relief.png", draw_relief(emblem)));
   APPLIQUE_CHECK(write_image(folder / "label.png", draw_label()));
   APPLIQUE_CHECK(write_jobs(folder));
   if (gallery) APPLIQUE_CHECK(write_gallery(folder));

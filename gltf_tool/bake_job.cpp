@@ -8,6 +8,7 @@
 
 #include "attach_overlay.h"
 #include "bake_plan.h"
+#include "bake_seams.h"
 #include "decal_layers.h"
 #include "edit.h"
 #include "overlay.h"
@@ -133,6 +134,44 @@ void warn_of_motion(SolvedDecal& decal, const Document& document, const OverlayM
            decal.job.name)});
 }
 
+/// The seams of one slot's textures, and these as they were before the decals.
+struct SlotSeams {
+  std::vector<TargetWork*> works;
+  std::vector<Image> before;
+  std::vector<Seam> seams;
+};
+
+std::vector<SlotSeams> seams_by_slot(const SolvedJob& job, std::vector<TargetWork>& works) {
+  std::vector<SlotSeams> slots;
+  for (const MaterialSlot slot : all_slots) {
+    SlotSeams of_slot;
+    std::vector<SizedTarget> targets;
+    for (TargetWork& work : works) {
+      if (work.target.slot != slot || encoding_of(slot) == Encoding::normal) continue;
+      of_slot.works.push_back(&work);
+      targets.push_back({&work.target, work.texture.width, work.texture.height});
+    }
+    of_slot.seams = find_seams(job, targets);
+    if (of_slot.seams.empty()) continue;
+    for (const TargetWork* work : of_slot.works) of_slot.before.push_back(work->texture);
+    slots.push_back(std::move(of_slot));
+  }
+  return slots;
+}
+
+void join_slot(const SlotSeams& slot) {
+  std::vector<SeamTexture> textures;
+  for (std::size_t i = 0; i < slot.works.size(); ++i) {
+    TargetWork& work = *slot.works[i];
+    const Transfer& transfer = work.transfers.front();
+    SeamTexture texture{&work.texture, &slot.before[i], transfer.wrap_u, transfer.wrap_v, {}};
+    for (const Transfer& layer : work.transfers)
+      for (std::size_t c = 0; c < 4; ++c) texture.channels[c] |= layer.channels[c];
+    textures.push_back(texture);
+  }
+  join_seams(slot.seams, textures, encoding_of(slot.works.front()->target.slot));
+}
+
 /// Transfers every decal into its textures, in the order of the job.
 Result<void> transfer_all(SolvedJob& job, std::vector<TargetWork>& works, GpuBaker& baker, BakedJob& baked,
                           const StageCallback& on_stage) {
@@ -146,6 +185,7 @@ Result<void> transfer_all(SolvedJob& job, std::vector<TargetWork>& works, GpuBak
       if (work.target.shares[i].layer == 0)
         transfers[work.target.shares[i].decal].push_back(&work.transfers[i]);
   }
+  const std::vector<SlotSeams> seams = seams_by_slot(job, works);
   for (std::size_t w = 0; w < works.size(); ++w) {
     TargetWork& work = works[w];
     on_stage("baking into " + work.report.material,
@@ -165,6 +205,9 @@ Result<void> transfer_all(SolvedJob& job, std::vector<TargetWork>& works, GpuBak
       if (!again) warn_of_factors(decal, job, work);
     }
   }
+  const Stopwatch watch;
+  for (const SlotSeams& slot : seams) join_slot(slot);
+  baked.times.add("seams", watch.seconds());
   for (std::size_t d = 0; d < job.decals.size(); ++d) {
     baked.densities.push_back(texel_density(job.decals[d], transfers[d]));
     warn_of_density(job.decals[d], baked.densities[d]);

@@ -50,23 +50,10 @@ MaterialTexture texture_of(const Model& model, const BakeTarget& target) {
   return read_texture(model.document, model.document.json.at("materials").at(*target.material), target.slot);
 }
 
-/// A part's texture coordinates for a slot, as ModelPart::uvs are those of the base colour.
-std::vector<std::array<double, 2>> uvs_for(const Model& model, const ModelPart& part, MaterialSlot slot) {
-  if (!part.material || slot == MaterialSlot::base_color) return part.uvs;
-  const auto& material = model.document.json.at("materials").at(*part.material);
-  const UvMapping mapping = read_uv_mapping(material, slot);
-  if (mapping == read_uv_mapping(material)) return part.uvs;
-  const auto set = part.other_uvs.find(mapping.set);
-  if (set == part.other_uvs.end()) return {};
-  std::vector<std::array<double, 2>> uvs = set->second;
-  for (auto& uv : uvs) uv = mapping.apply(uv);
-  return uvs;
-}
-
 Result<void> check_uvs(const SolvedJob& job, const BakeTarget& target) {
   for (const std::uint32_t index : target.parts) {
     const ModelPart& part = job.model.parts[index];
-    if (!uvs_for(job.model, part, target.slot).empty()) continue;
+    if (!slot_uvs(job.model, part, target.slot).empty()) continue;
     const auto& mesh = job.model.document.json.at("meshes").at(part.mesh);
     const std::string name = mesh.value("name", std::string());
     return fail(
@@ -149,6 +136,18 @@ std::array<int, 2> size_of_new(const SolvedJob& job, const BakeTarget& target) {
 
 }  // namespace
 
+std::vector<std::array<double, 2>> slot_uvs(const Model& model, const ModelPart& part, MaterialSlot slot) {
+  if (!part.material || slot == MaterialSlot::base_color) return part.uvs;
+  const auto& material = model.document.json.at("materials").at(*part.material);
+  const UvMapping mapping = read_uv_mapping(material, slot);
+  if (mapping == read_uv_mapping(material)) return part.uvs;
+  const auto set = part.other_uvs.find(mapping.set);
+  if (set == part.other_uvs.end()) return {};
+  std::vector<std::array<double, 2>> uvs = set->second;
+  for (auto& uv : uvs) uv = mapping.apply(uv);
+  return uvs;
+}
+
 Result<std::vector<BakeTarget>> plan_bake(const SolvedJob& job, Document& document) {
   const auto touched = find_touched_parts(job);
   std::vector<PartKey> keys;
@@ -221,7 +220,7 @@ Transfer lay_out_transfer(const SolvedJob& job, const BakeTarget& target, const 
   std::map<std::uint32_t, std::vector<std::array<double, 2>>> uvs;  // by part
   std::map<std::uint32_t, std::vector<std::array<Tangent, 3>>> frames;
   for (const std::uint32_t index : target.parts) {
-    uvs[index] = uvs_for(job.model, job.model.parts[index], target.slot);
+    uvs[index] = slot_uvs(job.model, job.model.parts[index], target.slot);
     if (transfer.encoding == Encoding::normal)
       frames[index] = tangent_frames(job.model.parts[index], uvs[index]);
   }

@@ -31,6 +31,9 @@ struct BakeTarget {
       shares;  ///< All that lie on the parts and have a layer for the slot, in the job's order.
 };
 
+/// A part's texture coordinates for a slot, as ModelPart::uvs are those of the base colour; empty: none.
+std::vector<std::array<double, 2>> slot_uvs(const Model& model, const ModelPart& part, MaterialSlot slot);
+
 /// The textures that the layers of the job's baked decals (not its overlays) need. `document`, a copy of the
 /// model's, gets the isolated materials. Errors: uvs_missing, naming the decal and the mesh, for a touched
 /// part without texture coordinates.

@@ -1,15 +1,18 @@
 #include "model_picture.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <future>
 #include <map>
+#include <optional>
 #include <utility>
 #include <vector>
 
 #include "applique/gpu/renderer.h"
 
 #include "decal_view.h"
+#include "material.h"
 
 namespace applique {
 namespace {
@@ -18,16 +21,28 @@ std::array<float, 3> to_floats(const Vec3& v) {
   return {static_cast<float>(v.x()), static_cast<float>(v.y()), static_cast<float>(v.z())};
 }
 
+/// The image in a slot of the part's material, if the part can show it: it has one set of texture coordinates
+/// here, the base colour's.
+std::optional<std::size_t> shown_image(const Model& model, const ModelPart& part, MaterialSlot slot) {
+  if (!part.material || part.uvs.empty()) return std::nullopt;
+  const auto& material = model.document.json.at("materials").at(*part.material);
+  if (read_uv_mapping(material, slot) != read_uv_mapping(material)) return std::nullopt;
+  return read_texture(model.document, material, slot).image;
+}
+
+constexpr std::array shown_slots = {MaterialSlot::base_color, MaterialSlot::metallic_roughness,
+                                    MaterialSlot::normal, MaterialSlot::emissive};
+
 /// The images that the parts show, decoded side by side.
 Result<std::map<std::size_t, Image>> load_images(const Model& model) {
   std::map<std::size_t, std::future<Result<Image>>> loading;
-  for (const ModelPart& part : model.parts) {
-    if (!part.material || part.uvs.empty()) continue;
-    const auto image = model.materials[*part.material].image;
-    if (image && !loading.contains(*image))
-      loading[*image] =
-          std::async(std::launch::async, [&model, image] { return load_model_image(model, *image); });
-  }
+  for (const ModelPart& part : model.parts)
+    for (const MaterialSlot slot : shown_slots) {
+      const auto image = shown_image(model, part, slot);
+      if (image && !loading.contains(*image))
+        loading[*image] =
+            std::async(std::launch::async, [&model, image] { return load_model_image(model, *image); });
+    }
   std::map<std::size_t, Image> images;
   for (auto& [index, image] : loading) {
     APPLIQUE_TRY(images[index], image.get());
@@ -50,7 +65,27 @@ RenderMesh mesh_of(const Model& model, const ModelPart& part, const std::map<std
   const ModelMaterial& material = model.materials[*part.material];
   for (std::size_t c = 0; c < 4; ++c)
     mesh.base_colour_factor[c] = static_cast<float>(material.base_colour_factor[c]);
-  if (material.image && !part.uvs.empty()) mesh.base_colour = &images.at(*material.image);
+  const auto texture = [&](MaterialSlot slot) -> const Image* {
+    const auto image = shown_image(model, part, slot);
+    return image ? &images.at(*image) : nullptr;
+  };
+  mesh.base_colour = texture(MaterialSlot::base_color);
+  mesh.normal = texture(MaterialSlot::normal);
+  mesh.metallic_roughness = texture(MaterialSlot::metallic_roughness);
+  mesh.emissive = texture(MaterialSlot::emissive);
+  const auto& json = model.document.json.at("materials").at(*part.material);
+  const auto number = [&](std::initializer_list<const char*> path) {
+    const auto* value = find(json, path);
+    return value != nullptr ? value->get<float>() : 1.0F;
+  };
+  // Without such a texture the factors say little: files leave them at metal.
+  if (mesh.metallic_roughness != nullptr) {
+    mesh.metallic = number({"pbrMetallicRoughness", "metallicFactor"});
+    mesh.roughness = number({"pbrMetallicRoughness", "roughnessFactor"});
+  }
+  mesh.normal_scale = number({"normalTexture", "scale"});
+  if (const auto* factor = find(json, {"emissiveFactor"}))
+    mesh.emissive_factor = factor->get<std::array<float, 3>>();
   mesh.alpha_mode = alpha_mode_of(material.alpha_mode);
   mesh.alpha_cutoff = static_cast<float>(material.alpha_cutoff);
   mesh.double_sided = material.double_sided;

@@ -32,14 +32,18 @@ struct RenderFrame {
 };
 
 struct RenderDraw {
-  vec4 base_colour;  // Factor on the texture, linear light.
+  vec4 base_colour;  // Factors on the textures, linear light.
+  vec4 emissive;
   float cutoff;
   uint alpha_mode;
+  float metallic;
+  float roughness;
+  float normal_scale;  // 0: no relief.
 };
 
 #ifdef __cplusplus
 static_assert(sizeof(RenderFrame) == 176 && offsetof(RenderFrame, background_bottom) == 160);
-static_assert(sizeof(RenderDraw) == 24 && offsetof(RenderDraw, alpha_mode) == 20);
+static_assert(sizeof(RenderDraw) == 52 && offsetof(RenderDraw, alpha_mode) == 36);
 }  // namespace applique::shader
 #endif
 #undef APPLIQUE_CONST

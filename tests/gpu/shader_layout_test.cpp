@@ -35,7 +35,7 @@ TEST(ShaderLayout, TransferShadersMatch) {
 
 TEST(ShaderLayout, RenderShadersMatch) {
   const SpirvReflection mesh = reflect_spirv(applique_spirv_mesh_fragment);
-  EXPECT_EQ(mesh.bindings, (Bindings{0, 1}));
+  EXPECT_EQ(mesh.bindings, (Bindings{0, 1, 2, 3, 4}));
   EXPECT_EQ(mesh.push_size, sizeof(shader::RenderDraw));
 }
 

@@ -25,6 +25,8 @@ namespace applique {
 namespace {
 
 constexpr VkFormat colour_format = VK_FORMAT_R8G8B8A8_SRGB;
+constexpr VkFormat data_format = VK_FORMAT_R8G8B8A8_UNORM;
+constexpr std::uint32_t texture_count = 4;  // Base colour, metallic and roughness, normal, emissive.
 constexpr VkSampleCountFlagBits samples = VK_SAMPLE_COUNT_4_BIT;  // Every device has it.
 constexpr ImageUse unused = {VK_IMAGE_LAYOUT_UNDEFINED, VK_PIPELINE_STAGE_TOP_OF_PIPE_BIT, 0};
 constexpr ImageUse copy_target = {VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, VK_PIPELINE_STAGE_TRANSFER_BIT,
@@ -121,14 +123,14 @@ Image halved(const Image& image) {
   return half;
 }
 
-Result<GpuImage> upload_texture(const Device& device, const Image& image) {
+Result<GpuImage> upload_texture(const Device& device, const Image& image, VkFormat format) {
   const auto largest = static_cast<int>(device.properties().limits.maxImageDimension2D);
-  if (std::max(image.width, image.height) > largest) return upload_texture(device, halved(image));
+  if (std::max(image.width, image.height) > largest) return upload_texture(device, halved(image), format);
   GpuImageInfo info;
-  info.name = "base colour";
+  info.name = "texture";
   info.width = static_cast<std::uint32_t>(image.width);
   info.height = static_cast<std::uint32_t>(image.height);
-  info.format = colour_format;
+  info.format = format;
   info.usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
   info.levels = static_cast<std::uint32_t>(std::bit_width(std::max(info.width, info.height)));
   APPLIQUE_TRY(GpuImage texture, GpuImage::create(device, info));
@@ -269,11 +271,11 @@ Result<Target> make_target(const Device& device, VkExtent2D size) {
   return target;
 }
 
-// What each mesh's shaders read: the frame and a texture.
+// What each mesh's shaders read: the frame and its textures.
 struct Descriptors {
   DeviceObject<VkDescriptorSetLayout> set_layout;
   DeviceObject<VkPipelineLayout> layout;
-  std::map<const Image*, GpuImage> textures;
+  std::map<std::pair<const Image*, VkFormat>, GpuImage> textures;
   std::map<std::pair<WrapMode, WrapMode>, DeviceObject<VkSampler>> samplers;
   DeviceObject<VkDescriptorPool> pool;
   std::vector<VkDescriptorSet> sets;  // By mesh, and one more with white.
@@ -283,11 +285,11 @@ Result<Descriptors> make_descriptors(const Device& device, std::span<const Rende
                                      const Buffer& frame) {
   const VkDevice handle = device.handles().device;
   Descriptors result;
-  const std::array<VkDescriptorSetLayoutBinding, 2> bindings = {{
-      {0, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, 1, VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT,
-       nullptr},
-      {1, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, 1, VK_SHADER_STAGE_FRAGMENT_BIT, nullptr},
-  }};
+  std::array<VkDescriptorSetLayoutBinding, 1 + texture_count> bindings;
+  bindings[0] = {0, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, 1,
+                 VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT, nullptr};
+  for (std::uint32_t k = 1; k <= texture_count; ++k)
+    bindings[k] = {k, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, 1, VK_SHADER_STAGE_FRAGMENT_BIT, nullptr};
   VkDescriptorSetLayoutCreateInfo set_layout{VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO};
   set_layout.bindingCount = static_cast<std::uint32_t>(bindings.size());
   set_layout.pBindings = bindings.data();
@@ -303,7 +305,8 @@ Result<Descriptors> make_descriptors(const Device& device, std::span<const Rende
 
   const auto count = static_cast<std::uint32_t>(meshes.size() + 1);
   const std::array<VkDescriptorPoolSize, 2> sizes = {
-      {{VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, count}, {VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, count}}};
+      {{VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, count},
+       {VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, texture_count * count}}};
   VkDescriptorPoolCreateInfo pool{VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO};
   pool.maxSets = count;
   pool.poolSizeCount = static_cast<std::uint32_t>(sizes.size());
@@ -321,18 +324,27 @@ Result<Descriptors> make_descriptors(const Device& device, std::span<const Rende
   const RenderMesh plain;
   for (std::size_t i = 0; i < count; ++i) {
     const RenderMesh& mesh = i < meshes.size() ? meshes[i] : plain;
-    const Image* image = mesh.uvs.empty() ? nullptr : mesh.base_colour;
-    if (!result.textures.count(image)) {
-      APPLIQUE_TRY(result.textures[image], upload_texture(device, image ? *image : white));
-    }
     DeviceObject<VkSampler>& sampler = result.samplers[{mesh.wrap_u, mesh.wrap_v}];
     if (sampler.get() == VK_NULL_HANDLE) {
       APPLIQUE_TRY(sampler, make_sampler(device, mesh.wrap_u, mesh.wrap_v));
     }
     const VkDescriptorBufferInfo buffer{frame.handle(), 0, VK_WHOLE_SIZE};
-    const VkDescriptorImageInfo texture{sampler.get(), result.textures[image].view(),
-                                        VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
-    std::array<VkWriteDescriptorSet, 2> writes{};
+    const std::array<std::pair<const Image*, VkFormat>, texture_count> wanted = {
+        {{mesh.base_colour, colour_format},
+         {mesh.metallic_roughness, data_format},
+         {mesh.normal, data_format},
+         {mesh.emissive, colour_format}}};
+    std::array<VkDescriptorImageInfo, texture_count> infos{};
+    for (std::size_t k = 0; k < texture_count; ++k) {
+      const Image* image = mesh.uvs.empty() ? nullptr : wanted[k].first;
+      const auto [texture, fresh] = result.textures.try_emplace({image, wanted[k].second});
+      if (fresh) {
+        APPLIQUE_TRY(texture->second,
+                     upload_texture(device, image != nullptr ? *image : white, wanted[k].second));
+      }
+      infos[k] = {sampler.get(), texture->second.view(), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
+    }
+    std::array<VkWriteDescriptorSet, 1 + texture_count> writes{};
     for (std::uint32_t k = 0; k < writes.size(); ++k) {
       writes[k].sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET;
       writes[k].dstSet = result.sets[i];
@@ -341,7 +353,7 @@ Result<Descriptors> make_descriptors(const Device& device, std::span<const Rende
       writes[k].descriptorType = bindings[k].descriptorType;
     }
     writes[0].pBufferInfo = &buffer;
-    writes[1].pImageInfo = &texture;
+    for (std::size_t k = 0; k < texture_count; ++k) writes[1 + k].pImageInfo = &infos[k];
     device.functions().vkUpdateDescriptorSets(handle, static_cast<std::uint32_t>(writes.size()),
                                               writes.data(), 0, nullptr);
   }
@@ -444,8 +456,15 @@ Result<Image> render(const Device& device, std::span<const RenderMesh> meshes, c
       const DrawRange& range = geometry.ranges[i];
       if (range.indices == 0) continue;
       bind(pipelines.at({mesh.alpha_mode == AlphaMode::blend, mesh.double_sided}).get(), descriptors.sets[i]);
-      const shader::RenderDraw draw{mesh.base_colour_factor, mesh.alpha_cutoff,
-                                    static_cast<std::uint32_t>(mesh.alpha_mode)};
+      const auto& glow = mesh.emissive_factor;
+      const bool relief = mesh.normal != nullptr && !mesh.uvs.empty();
+      const shader::RenderDraw draw{mesh.base_colour_factor,
+                                    {glow[0], glow[1], glow[2], 0},
+                                    mesh.alpha_cutoff,
+                                    static_cast<std::uint32_t>(mesh.alpha_mode),
+                                    mesh.metallic,
+                                    mesh.roughness,
+                                    relief ? mesh.normal_scale : 0};
       vk.vkCmdPushConstants(commands, descriptors.layout.get(), VK_SHADER_STAGE_FRAGMENT_BIT, 0, sizeof(draw),
                             &draw);
       vk.vkCmdDrawIndexed(commands, range.indices, 1, range.first_index, range.first_vertex, 0);

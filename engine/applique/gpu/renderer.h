@@ -19,11 +19,18 @@ enum class AlphaMode : std::uint32_t { opaque, mask, blend };
 /// Triangles with one material, in scene space.
 struct RenderMesh {
   std::vector<std::array<float, 3>> positions;
-  std::vector<std::array<float, 3>> normals;               ///< Unit, one per position; empty or zero: flat.
-  std::vector<std::array<float, 2>> uvs;                   ///< v down, one per position; empty: no texture.
-  std::vector<std::array<std::uint32_t, 3>> triangles;     ///< Counter-clockwise seen from outside.
-  const Image* base_colour = nullptr;                      ///< Null: white.
+  std::vector<std::array<float, 3>> normals;            ///< Unit, one per position; empty or zero: flat.
+  std::vector<std::array<float, 2>> uvs;                ///< v down, one per position; empty: no texture.
+  std::vector<std::array<std::uint32_t, 3>> triangles;  ///< Counter-clockwise seen from outside.
+  const Image* base_colour = nullptr;                   ///< Null: white.
+  const Image* metallic_roughness = nullptr;  ///< Roughness in green, metallic in blue. Null: white.
+  const Image* normal = nullptr;              ///< Tangent space, as in glTF. Null: no relief.
+  const Image* emissive = nullptr;            ///< Null: white.
   std::array<float, 4> base_colour_factor = {1, 1, 1, 1};  ///< Linear light.
+  float metallic = 0;
+  float roughness = 0.447F;  ///< A slight gloss.
+  float normal_scale = 1;
+  std::array<float, 3> emissive_factor = {0, 0, 0};  ///< Linear light.
   AlphaMode alpha_mode = AlphaMode::opaque;
   float alpha_cutoff = 0.5F;
   bool double_sided = false;

@@ -1,0 +1,344 @@
+#include "applique/transfer/seams.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <unordered_map>
+
+#include <Eigen/SparseCholesky>
+
+#include "applique/image/decal_image.h"
+
+namespace applique {
+namespace {
+
+constexpr double spacing = 0.5;            // texels between samples
+constexpr double worn_seam = 8 / 255.0;    // a seam that the texture had before
+constexpr double gutter_stiffness = 0.05;  // of a texel out of sight against one that shows
+constexpr double agreement = 6;            // of a sample's difference against a texel's change
+// How far a texel may go. To agree everywhere, two sides whose texels are out of step would have to be smooth
+// along the seam, which smears what crosses it.
+constexpr double most_shown = 3 / 255.0, most_in_gutter = 16 / 255.0;
+constexpr int passes = 2;
+constexpr int rounds = 30;
+constexpr int releases = 15;  // rounds in which held values may come back: later on they would go to and fro
+
+int wrapped(std::int64_t texel, int size, WrapMode mode) {
+  if (mode == WrapMode::clamp) return static_cast<int>(std::clamp<std::int64_t>(texel, 0, size - 1));
+  const std::int64_t period = mode == WrapMode::repeat ? size : 2 * std::int64_t{size};
+  const std::int64_t in = ((texel % period) + period) % period;
+  return static_cast<int>(in < size ? in : period - 1 - in);
+}
+
+/// A texel of one of the textures.
+struct Place {
+  std::uint32_t texture;
+  std::uint32_t index;  ///< y * width + x
+};
+
+/// What a bilinear filter takes for one side of a sample.
+struct Stencil {
+  std::array<Place, 4> places;
+  std::array<double, 4> weights;
+  std::array<bool, 4> shown;  ///< The texel's centre lies on the triangle's side of the seam.
+};
+
+/// Twice the area of the triangle, by its orientation.
+double orientation(const Texel& a, const Texel& b, const Texel& c) {
+  return (b[0] - a[0]) * (c[1] - a[1]) - (c[0] - a[0]) * (b[1] - a[1]);
+}
+
+Stencil stencil_at(const SeamTexture& texture, const Seam::Side& side, const Texel& p) {
+  const double x = p[0] - 0.5, y = p[1] - 0.5, x0 = std::floor(x), y0 = std::floor(y);
+  Stencil stencil{};
+  for (std::size_t k = 0; k < 4; ++k) {
+    const int right = static_cast<int>(k) % 2, down = static_cast<int>(k) / 2;
+    const int column = wrapped(static_cast<std::int64_t>(x0) + right, texture.image->width, texture.wrap_u);
+    const int row = wrapped(static_cast<std::int64_t>(y0) + down, texture.image->height, texture.wrap_v);
+    stencil.places[k] = {side.texture, static_cast<std::uint32_t>(row * texture.image->width + column)};
+    stencil.weights[k] = (right == 1 ? x - x0 : x0 + 1 - x) * (down == 1 ? y - y0 : y0 + 1 - y);
+    const Texel centre = {x0 + right + 0.5, y0 + down + 0.5};
+    stencil.shown[k] =
+        orientation(side.ends[0], side.ends[1], centre) * orientation(side.ends[0], side.ends[1], side.apex) >
+        0;
+  }
+  return stencil;
+}
+
+using Sample = std::array<Stencil, 2>;
+
+std::vector<Sample> samples_along(std::span<const Seam> seams, std::span<const SeamTexture> textures) {
+  std::vector<Sample> samples;
+  for (const Seam& seam : seams) {
+    double length = 0;
+    for (const auto& [texture, ends, apex] : seam.sides)
+      length = std::max(length, std::hypot(ends[1][0] - ends[0][0], ends[1][1] - ends[0][1]));
+    const int count = std::max(1, static_cast<int>(std::ceil(length / spacing)));
+    for (int i = 0; i < count; ++i) {
+      const double t = (i + 0.5) / count;
+      Sample sample;
+      for (std::size_t k = 0; k < 2; ++k) {
+        const Seam::Side& side = seam.sides[k];
+        const auto& ends = side.ends;
+        sample[k] =
+            stencil_at(textures[side.texture], side,
+                       {(1 - t) * ends[0][0] + t * ends[1][0], (1 - t) * ends[0][1] + t * ends[1][1]});
+      }
+      samples.push_back(sample);
+    }
+  }
+  return samples;
+}
+
+bool is_changed(const SeamTexture& texture, std::uint32_t index) {
+  return !std::equal(&texture.image->rgba[4 * std::size_t{index}],
+                     &texture.image->rgba[4 * std::size_t{index}] + 4,
+                     &texture.before->rgba[4 * std::size_t{index}]);
+}
+
+/// How a channel is stored.
+struct Coding {
+  bool srgb;
+  [[nodiscard]] double decode(double stored) const { return srgb ? srgb_to_linear(stored) : stored; }
+  [[nodiscard]] double encode(double value) const {
+    value = std::clamp(value, 0.0, 1.0);
+    return srgb ? linear_to_srgb(value) : value;
+  }
+  /// Stored steps per step of the value.
+  [[nodiscard]] double slope(double value) const {
+    if (!srgb) return 1;
+    value = std::clamp(value, 0.0, 1.0);
+    return value <= 0.0031308 ? 12.92 : 1.055 / 2.4 * std::pow(value, 1 / 2.4 - 1);
+  }
+};
+
+Coding coding_of(Encoding encoding, int channel) {
+  return {encoding == Encoding::colour && channel < 3};
+}
+
+/// What the filter shows of the textures as they are, or as they were.
+enum class State { now, before };
+double filtered(const Stencil& stencil, std::span<const SeamTexture> textures, State state, int channel,
+                const Coding& coding) {
+  double sum = 0;
+  for (std::size_t k = 0; k < 4; ++k) {
+    const auto& [texture, index] = stencil.places[k];
+    const Image& image = state == State::now ? *textures[texture].image : *textures[texture].before;
+    sum += stencil.weights[k] * coding.decode(image.rgba[4 * std::size_t{index} + channel] / 65535.0);
+  }
+  return sum;
+}
+
+/// The texels that may change.
+class Unknowns {
+ public:
+  Unknowns(const std::vector<Sample>& samples, std::span<const SeamTexture> textures) {
+    for (const Sample& sample : samples)
+      for (const Stencil& stencil : sample)
+        for (std::size_t k = 0; k < 4; ++k) {
+          const Place& place = stencil.places[k];
+          const auto [slot, fresh] = slots_.try_emplace(key_of(place), fixed);
+          if (fresh && is_changed(textures[place.texture], place.index)) {
+            slot->second = static_cast<int>(places_.size());
+            places_.push_back(place);
+            shown_.push_back(false);
+          }
+          if (slot->second != fixed && stencil.shown[k])
+            shown_[static_cast<std::size_t>(slot->second)] = true;
+        }
+  }
+
+  static constexpr int fixed = -1;
+  [[nodiscard]] int slot(const Place& place) const { return slots_.at(key_of(place)); }
+  [[nodiscard]] const std::vector<Place>& places() const { return places_; }
+  [[nodiscard]] const std::vector<char>& shown() const { return shown_; }
+
+ private:
+  static std::uint64_t key_of(const Place& place) { return std::uint64_t{place.texture} << 32 | place.index; }
+  std::unordered_map<std::uint64_t, int> slots_;
+  std::vector<Place> places_;
+  std::vector<char> shown_;
+};
+
+/// Samples that are to agree: with a texel to move, and not of a seam that shows through what the decal
+/// leaves open.
+std::vector<Sample> worth_joining(std::vector<Sample> samples, std::span<const SeamTexture> textures,
+                                  Encoding encoding) {
+  std::erase_if(samples, [&](const Sample& sample) {
+    bool any = false, all = true;
+    for (const Stencil& stencil : sample)
+      for (const Place& place : stencil.places) {
+        const bool changed = is_changed(textures[place.texture], place.index);
+        any |= changed;
+        all &= changed;
+      }
+    if (!any || all) return !any;
+    for (int c = 0; c < 3; ++c) {
+      const Coding coding = coding_of(encoding, c);
+      const double a = filtered(sample[0], textures, State::before, c, coding);
+      const double b = filtered(sample[1], textures, State::before, c, coding);
+      if (std::abs(coding.encode(a) - coding.encode(b)) > worn_seam) return true;
+    }
+    return false;
+  });
+  return samples;
+}
+
+/// One channel of the texels: least squares within 0 and 1, by an active set of values at these ends.
+class Channel {
+ public:
+  Channel(const std::vector<Sample>& samples, const Unknowns& unknowns, std::span<const SeamTexture> textures,
+          int channel, const Coding& coding)
+      : samples_(samples), unknowns_(unknowns), textures_(textures), channel_(channel), coding_(coding) {
+    const auto count = static_cast<Eigen::Index>(unknowns.places().size());
+    first_.resize(count);
+    for (Eigen::Index i = 0; i < count; ++i)
+      first_[i] = coding.decode(stored(unknowns.places()[i]) / 65535.0);
+    value_ = first_;
+    lower_.resize(count);
+    upper_.resize(count);
+    for (Eigen::Index i = 0; i < count; ++i) {
+      const double reach = unknowns.shown()[i] ? most_shown : most_in_gutter;
+      const double encoded = coding.encode(first_[i]);
+      lower_[i] = coding.decode(std::max(0.0, encoded - reach));
+      upper_[i] = coding.decode(std::min(1.0, encoded + reach));
+    }
+    held_.assign(unknowns.places().size(), false);
+  }
+
+  void join() {
+    // The samples' stiffness hangs on the values.
+    for (int pass = 0; pass < passes; ++pass) {
+      assemble();
+      for (int round = 0; round < rounds && solve(round < releases); ++round) {
+      }
+    }
+    for (Eigen::Index i = 0; i < value_.size(); ++i) {
+      const Place& place = unknowns_.places()[i];
+      const double steps = textures_[place.texture].image->bits == 8 ? 255 : 65535;
+      stored(place) =
+          static_cast<std::uint16_t>(std::floor(coding_.encode(value_[i]) * steps + 0.5) * (65535 / steps));
+    }
+  }
+
+ private:
+  [[nodiscard]] std::uint16_t& stored(const Place& place) const {
+    return textures_[place.texture].image->rgba[4 * std::size_t{place.index} + channel_];
+  }
+
+  void assemble() {
+    const Eigen::Index count = value_.size();
+    std::vector<Eigen::Triplet<double>> entries;
+    right_.resize(count);
+    for (Eigen::Index i = 0; i < count; ++i) {
+      const double slope = coding_.slope(first_[i]);
+      const double stiffness = (unknowns_.shown()[i] ? 1 : gutter_stiffness) * slope * slope;
+      entries.emplace_back(i, i, stiffness);
+      right_[i] = stiffness * first_[i];
+    }
+    for (const Sample& sample : samples_) add_sample(sample, entries);
+    matrix_.resize(count, count);
+    matrix_.setFromTriplets(entries.begin(), entries.end());
+  }
+
+  void add_sample(const Sample& sample, std::vector<Eigen::Triplet<double>>& entries) {
+    std::vector<std::pair<int, double>> row;
+    double offset = 0, mean = 0;
+    for (std::size_t side = 0; side < 2; ++side)
+      for (std::size_t k = 0; k < 4; ++k) {
+        const Place& place = sample[side].places[k];
+        const double weight = side == 0 ? sample[side].weights[k] : -sample[side].weights[k];
+        const int slot = unknowns_.slot(place);
+        const bool fixed = slot == Unknowns::fixed;
+        const double now = fixed ? coding_.decode(stored(place) / 65535.0) : value_[slot];
+        mean += 0.5 * sample[side].weights[k] * now;
+        if (fixed)
+          offset += weight * now;
+        else
+          row.emplace_back(slot, weight);
+      }
+    const double stiffness = agreement * coding_.slope(mean) * coding_.slope(mean);
+    for (const auto& [i, a] : row) {
+      right_[i] -= stiffness * a * offset;
+      for (const auto& [j, b] : row) entries.emplace_back(i, j, stiffness * a * b);
+    }
+  }
+
+  /// Solves for the values that are not held at an end. Whether others are to be held then.
+  bool solve(bool may_release) {
+    Eigen::SparseMatrix<double> free = matrix_;
+    Eigen::VectorXd right = right_;
+    for (Eigen::Index column = 0; column < free.cols(); ++column)
+      for (Eigen::SparseMatrix<double>::InnerIterator entry(free, column); entry; ++entry) {
+        if (held_[column] && !held_[entry.row()]) right[entry.row()] -= entry.value() * value_[column];
+        if (held_[column] || held_[entry.row()]) entry.valueRef() = entry.row() == column ? 1 : 0;
+      }
+    for (Eigen::Index i = 0; i < right.size(); ++i)
+      if (held_[i]) right[i] = value_[i];
+    if (!analysed_) solver_.analyzePattern(free);
+    analysed_ = true;
+    solver_.factorize(free);
+    if (solver_.info() != Eigen::Success) return false;
+    value_ = solver_.solve(right);
+
+    // Where a held value would rather come back, it may.
+    const Eigen::VectorXd pull = right_ - matrix_ * value_;
+    bool others = false;
+    for (Eigen::Index i = 0; i < value_.size(); ++i) {
+      const bool beyond = value_[i] < lower_[i] || value_[i] > upper_[i];
+      const bool stays = held_[i] && (!may_release || (value_[i] <= lower_[i] ? pull[i] < 0 : pull[i] > 0));
+      const bool held = held_[i] ? stays : beyond;
+      others |= held != static_cast<bool>(held_[i]);
+      held_[i] = held;
+      value_[i] = std::clamp(value_[i], lower_[i], upper_[i]);
+    }
+    return others;
+  }
+
+  const std::vector<Sample>& samples_;
+  const Unknowns& unknowns_;
+  std::span<const SeamTexture> textures_;
+  int channel_;
+  Coding coding_;
+  Eigen::SparseMatrix<double> matrix_;
+  Eigen::VectorXd right_, first_, value_, lower_, upper_;
+  std::vector<char> held_;
+  Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> solver_;
+  bool analysed_ = false;
+};
+
+}  // namespace
+
+std::vector<SeamSample> sample_seams(std::span<const Seam> seams, std::span<const SeamTexture> textures,
+                                     Encoding encoding) {
+  std::vector<SeamSample> result;
+  for (const Sample& sample : samples_along(seams, textures)) {
+    SeamSample shown{{}, true};
+    for (std::size_t side = 0; side < 2; ++side) {
+      for (const Place& place : sample[side].places)
+        shown.changed &= is_changed(textures[place.texture], place.index);
+      for (int c = 0; c < 4; ++c) {
+        const Coding coding = coding_of(encoding, c);
+        shown.colours[side][static_cast<std::size_t>(c)] =
+            coding.encode(filtered(sample[side], textures, State::now, c, coding));
+      }
+    }
+    result.push_back(shown);
+  }
+  return result;
+}
+
+void join_seams(std::span<const Seam> seams, std::span<const SeamTexture> textures, Encoding encoding) {
+  if (encoding == Encoding::normal) return;
+  const std::vector<Sample> samples = worth_joining(samples_along(seams, textures), textures, encoding);
+  if (samples.empty()) return;
+  const Unknowns unknowns(samples, textures);
+  for (int channel = 0; channel < 4; ++channel) {
+    const bool writes = std::any_of(textures.begin(), textures.end(), [&](const SeamTexture& texture) {
+      return texture.channels[static_cast<std::size_t>(channel)];
+    });
+    if (writes) Channel(samples, unknowns, textures, channel, coding_of(encoding, channel)).join();
+  }
+}
+
+}  // namespace applique

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "applique/image/image.h"
+#include "applique/transfer/transfer.h"
+
+namespace applique {
+
+/// A texture on the two sides of seams.
+struct SeamTexture {
+  Image* image = nullptr;
+  const Image* before =
+      nullptr;  ///< As it was before the decals: only texels that differ from it may change.
+  WrapMode wrap_u = WrapMode::repeat;
+  WrapMode wrap_v = WrapMode::repeat;
+  std::array<bool, 4> channels = {true, true, true, true};  ///< Which may change.
+};
+
+/// An edge of the surface where two triangles lie side by side but not their texture coordinates.
+struct Seam {
+  struct Side {
+    std::uint32_t texture;  ///< Index of a SeamTexture.
+    std::array<Texel, 2> ends;
+    Texel apex;  ///< The triangle's other corner: texels on its side show, those beyond are gutter.
+  };
+  std::array<Side, 2>
+      sides;  ///< The first ends of both are one point of the surface, the second ones another.
+};
+
+/// What a bilinear filter shows on either side of a seam, at places half a texel apart.
+struct SeamSample {
+  std::array<std::array<double, 4>, 2>
+      colours;   ///< By side, 0 to 1: filtered in linear light, and encoded again.
+  bool changed;  ///< All texels that take part are other than before.
+};
+std::vector<SeamSample> sample_seams(std::span<const Seam> seams, std::span<const SeamTexture> textures,
+                                     Encoding encoding);
+
+/// Brings what a bilinear filter shows on both sides of the seams together, by the smallest changes (least
+/// squares) of the texels near them that the decals have changed: by up to 3/255 where a texel shows, by up
+/// to 16/255 out in the gutter. Not for normals, whose two sides are in frames of their own.
+void join_seams(std::span<const Seam> seams, std::span<const SeamTexture> textures, Encoding encoding);
+
+}  // namespace applique

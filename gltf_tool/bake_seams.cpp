@@ -1,0 +1,100 @@
+#include "bake_seams.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <optional>
+#include <set>
+#include <utility>
+
+namespace applique {
+namespace {
+
+/// By surface face, the sheet that is on top; empty where there is only one.
+std::map<FaceId, std::uint32_t> top_sheets(const DecalMap& map) {
+  std::map<FaceId, std::uint32_t> top;
+  if (map.sheets == 1) return top;
+  for (const PatchFaceId f : ids<PatchFaceId>(map.patch.faces.size())) {
+    if (map.textured[f] == 0) continue;
+    std::uint32_t& sheet = top[map.patch.faces[f].mesh_face];
+    sheet = std::max(sheet, map.sheet[f]);
+  }
+  return top;
+}
+
+/// A decal's faces as the targets of one slot show them.
+class ShownFaces {
+ public:
+  ShownFaces(const SolvedJob& job, const SolvedDecal& decal, std::span<const SizedTarget> targets)
+      : job_(job), decal_(decal), targets_(targets), top_(top_sheets(decal.map)) {
+    for (std::uint32_t i = 0; i < targets.size(); ++i)
+      for (const std::uint32_t part : targets[i].target->parts) {
+        target_of_[part] = i;
+        uvs_[part] = slot_uvs(job.model, job.model.parts[part], targets[i].target->slot);
+      }
+  }
+
+  /// The face's side with the given vertices, in that order; none where it shows nothing.
+  [[nodiscard]] std::optional<Seam::Side> side(PatchFaceId f,
+                                               const std::array<PatchVertexId, 2>& ends) const {
+    const DecalMap& map = decal_.map;
+    const PatchFace& face = map.patch.faces[f];
+    if (map.textured[f] == 0 || !face.mesh_face.valid()) return std::nullopt;
+    if (!top_.empty() && top_.at(face.mesh_face) != map.sheet[f]) return std::nullopt;
+    const auto& source = decal_.surface->source(face.mesh_face);
+    const auto found = target_of_.find(source.part);
+    if (found == target_of_.end()) return std::nullopt;
+    const SizedTarget& target = targets_[found->second];
+    const auto& triangle = job_.model.parts[source.part].triangles[source.triangle];
+    Seam::Side side{found->second, {}, {}};
+    for (std::size_t corner = 0; corner < 3; ++corner) {
+      const auto& uv = uvs_.at(source.part)[triangle[corner]];
+      const Texel texel = {uv[0] * target.width, uv[1] * target.height};
+      const auto end = std::find(ends.begin(), ends.end(), face.vertices[corner]);
+      (end == ends.end() ? side.apex : side.ends[static_cast<std::size_t>(end - ends.begin())]) = texel;
+    }
+    return side;
+  }
+
+ private:
+  const SolvedJob& job_;
+  const SolvedDecal& decal_;
+  std::span<const SizedTarget> targets_;
+  std::map<FaceId, std::uint32_t> top_;
+  std::map<std::uint32_t, std::uint32_t> target_of_;  // By part.
+  std::map<std::uint32_t, std::vector<std::array<double, 2>>> uvs_;
+};
+
+bool coincide(const Seam::Side& a, const Seam::Side& b) {
+  constexpr double tolerance = 1e-3;  // texels
+  if (a.texture != b.texture) return false;
+  for (std::size_t k = 0; k < 2; ++k)
+    if (std::hypot(a.ends[k][0] - b.ends[k][0], a.ends[k][1] - b.ends[k][1]) > tolerance) return false;
+  return true;
+}
+
+}  // namespace
+
+std::vector<Seam> find_seams(const SolvedJob& job, std::span<const SizedTarget> targets) {
+  std::set<std::size_t> decals;
+  for (const SizedTarget& target : targets)
+    for (const BakeShare& share : target.target->shares) decals.insert(share.decal);
+  std::vector<Seam> seams;
+  for (const std::size_t d : decals) {
+    const SolvedDecal& decal = job.decals[d];
+    const ShownFaces shown(job, decal, targets);
+    for (const PatchFaceId f : ids<PatchFaceId>(decal.map.patch.faces.size())) {
+      const PatchFace& face = decal.map.patch.faces[f];
+      for (std::size_t k = 0; k < 3; ++k) {
+        const PatchFaceId across = face.neighbours[k];
+        if (!across.valid() || across < f) continue;
+        const std::array<PatchVertexId, 2> ends = {face.vertices[(k + 1) % 3], face.vertices[(k + 2) % 3]};
+        const auto here = shown.side(f, ends), there = shown.side(across, ends);
+        if (here && there && !coincide(*here, *there)) seams.push_back({{*here, *there}});
+      }
+    }
+  }
+  return seams;
+}
+
+}  // namespace applique
