@@ -6,13 +6,14 @@
 
 #include <fmt/format.h>
 
+#include "attach_overlay.h"
 #include "bake_plan.h"
 #include "bake_seams.h"
 #include "decal_layers.h"
 #include "edit.h"
 #include "instances.h"
 #include "overlay.h"
-#include "overlay_mesh.h"
+#include "overlay_layout.h"
 
 namespace applique {
 namespace {
@@ -135,19 +136,14 @@ void warn_of_density(SolvedDecal& decal, const std::optional<TexelDensity>& dens
                    decal.job.name, density->texels_per_pixel)});
 }
 
-void warn_of_motion(SolvedDecal& decal, const SolvedJob& job) {
-  const auto& json = job.model.document.json;
-  for (const PatchFace& face : decal.map.patch.faces) {
-    if (!face.mesh_face.valid()) continue;
-    const auto node = job.model.parts[decal.surface->source(face.mesh_face).part].node;
-    if (!json.at("nodes").at(node).contains("skin") && !json.contains("animations")) continue;
-    decal.warnings.push_back(
-        {"overlay_static",
-         fmt::format("decal '{}': the overlay lies on the model at rest and does not follow its "
-                     "animation; bake the decal if the model moves",
-                     decal.job.name)});
-    return;
-  }
+void warn_of_motion(SolvedDecal& decal, const Document& document, const OverlayMesh& overlay) {
+  if (overlay.node || !document.json.contains("animations")) return;
+  decal.warnings.push_back(
+      {"overlay_static",
+       fmt::format(
+           "decal '{}': a node under it is flat at rest (its transform has no inverse), so the overlay "
+           "there stays at the rest pose and does not follow the model's animation; bake the decal",
+           decal.job.name)});
 }
 
 /// The seams of one slot's textures, and these as they were before the decals.
@@ -261,16 +257,28 @@ Result<void> add_overlays(SolvedJob& job, const TextureEncoding& encoding, Baked
   for (SolvedDecal& decal : job.decals) {
     if (decal.job.output != DecalOutput::overlay) continue;
     const Stopwatch watch;
-    const OverlayMesh mesh =
-        build_overlay_mesh(job.model, decal, decal.job.offset.value_or(default_offset(job.model)));
+    const auto [mesh, picture, divided_skin] =
+        lay_out_overlay(job.model, decal, decal.job.offset.value_or(default_offset(job.model)));
     if (mesh.triangles.empty())
       return fail(ErrorCode::not_solved,
                   fmt::format("decal '{}': none of the image lies on the surface", decal.job.name));
-    APPLIQUE_TRY(const EncodedTexture encoded, encode_texture(overlay_image(decal), encoding));
-    add_overlay(baked.document, decal.job.name, mesh, encoded.bytes);
+    APPLIQUE_TRY(const auto overlays, attach_overlay(job.model, decal, mesh));
+    APPLIQUE_TRY(const EncodedTexture encoded, encode_texture(picture, encoding));
+    const std::size_t material = add_overlay_material(baked.document, decal.job.name, encoded.bytes);
+    for (const OverlayMesh& overlay : overlays) {
+      add_overlay(baked.document, decal.job.name, overlay, material);
+      warn_of_motion(decal, baked.document, overlay);
+    }
+    if (divided_skin)
+      decal.warnings.push_back(
+          {"overlay_follows_nearly",
+           fmt::format(
+               "decal '{}': the image overlaps itself on a skin, where an overlay follows the model's "
+               "poses exactly only at the corners of its triangles; bake the decal, or give the overlay "
+               "a larger \"offset\"",
+               decal.job.name)});
     warn_of_format(baked, fmt::format("the texture of the overlay '{}'", decal.job.name), encoded);
     decal.times.add("overlay", watch.seconds());
-    warn_of_motion(decal, job);
   }
   return {};
 }

@@ -35,7 +35,8 @@ struct BakedJob {  // NOLINT(bugprone-exception-escape): so is Document
 
 /// Puts the decals on the model: bakes each into the base-colour textures under it, or adds it as an overlay.
 /// Adds warnings to the decals: uv_overlap, base_color_factor_tints, vertex_colors_tint, low_texel_density,
-/// overlay_static. Errors: uvs_missing, device_failed, and those of load_model_image and encode_texture.
+/// overlay_static, overlay_follows_nearly. Errors: uvs_missing, device_failed, and those of load_model_image
+/// and encode_texture.
 Result<BakedJob> bake_job(SolvedJob& job, GpuBaker& baker, const StageCallback& on_stage = {},
                           const TextureEncoding& encoding = {});
 

@@ -288,4 +288,11 @@ Result<std::vector<std::uint32_t>> read_integers(const tinygltf::Model& model, i
                                       [type](const std::uint8_t* at) { return load_integer(at, type); });
 }
 
+std::vector<Vec3> to_vectors(const std::vector<double>& values) {
+  std::vector<Vec3> vectors(values.size() / 3);
+  for (std::size_t i = 0; i < vectors.size(); ++i)
+    vectors[i] = {values[3 * i], values[3 * i + 1], values[3 * i + 2]};
+  return vectors;
+}
+
 }  // namespace applique

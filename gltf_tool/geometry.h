@@ -7,6 +7,7 @@
 #include <tiny_gltf.h>
 
 #include "applique/base/error.h"
+#include "applique/base/types.h"
 
 #include "document.h"
 
@@ -28,5 +29,8 @@ Result<std::vector<double>> read_accessor(const tinygltf::Model& model, int acce
 /// The elements of a scalar or vector accessor of unsigned integers, one after the other.
 Result<std::vector<std::uint32_t>> read_integers(const tinygltf::Model& model, int accessor, int components,
                                                  const std::string& what);
+
+/// Three numbers each.
+std::vector<Vec3> to_vectors(const std::vector<double>& values);
 
 }  // namespace applique

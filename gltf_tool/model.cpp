@@ -9,6 +9,7 @@
 
 #include "geometry.h"
 #include "material.h"
+#include "posing.h"
 
 namespace applique {
 namespace {
@@ -19,31 +20,12 @@ using Eigen::Matrix4d;
 /// decals on.
 constexpr std::size_t max_triangles = std::size_t{1} << 26;
 
-Matrix4d local_matrix(const tinygltf::Node& node) {
-  if (node.matrix.size() == 16) return Eigen::Map<const Matrix4d>(node.matrix.data());
-  Eigen::Affine3d transform = Eigen::Affine3d::Identity();
-  if (node.translation.size() == 3) transform.translate(Eigen::Map<const Vec3>(node.translation.data()));
-  if (node.rotation.size() == 4) {
-    const Eigen::Quaterniond q(node.rotation[3], node.rotation[0], node.rotation[1], node.rotation[2]);
-    if (q.norm() > 0) transform.rotate(q.normalized());
-  }
-  if (node.scale.size() == 3) transform.scale(Eigen::Map<const Vec3>(node.scale.data()));
-  return transform.matrix();
-}
-
 /// The matrix that carries normals: the inverse transpose of the linear part, up to a positive factor.
 Eigen::Matrix3d normal_matrix(const Matrix4d& matrix) {
   const Eigen::Matrix3d linear = matrix.topLeftCorner<3, 3>();
   Eigen::Matrix3d cofactor;
   for (int c = 0; c < 3; ++c) cofactor.col(c) = linear.col((c + 1) % 3).cross(linear.col((c + 2) % 3));
   return linear.determinant() < 0 ? Eigen::Matrix3d(-cofactor) : cofactor;
-}
-
-std::vector<Vec3> to_vectors(const std::vector<double>& values) {
-  std::vector<Vec3> vectors(values.size() / 3);
-  for (std::size_t i = 0; i < vectors.size(); ++i)
-    vectors[i] = {values[3 * i], values[3 * i + 1], values[3 * i + 2]};
-  return vectors;
 }
 
 struct PositionHash {
@@ -54,24 +36,6 @@ struct PositionHash {
   }
 };
 
-/// Area-weighted vertex normals, smooth across vertices at one position.
-std::vector<Vec3> smooth_normals(const ModelPart& part) {
-  std::unordered_map<std::array<double, 3>, Vec3, PositionHash> sums;
-  const auto key = [&](std::size_t i) {
-    const Vec3& p = part.positions[i];
-    return std::array<double, 3>{p.x(), p.y(), p.z()};
-  };
-  for (const auto& t : part.triangles) {
-    const Vec3 normal =
-        (part.positions[t[1]] - part.positions[t[0]]).cross(part.positions[t[2]] - part.positions[t[0]]);
-    for (const std::uint32_t corner : t) sums.try_emplace(key(corner), Vec3::Zero()).first->second += normal;
-  }
-  std::vector<Vec3> normals(part.positions.size(), Vec3::UnitZ());
-  for (std::size_t i = 0; i < normals.size(); ++i)
-    if (const auto sum = sums.find(key(i)); sum != sums.end()) normals[i] = sum->second;
-  return normals;
-}
-
 /// Decodes the parts that the default scene shows.
 class PartReader {
  public:
@@ -79,7 +43,8 @@ class PartReader {
       : document_(document), model_(model), warnings_(warnings) {}
 
   Result<std::vector<ModelPart>> run() {
-    place_nodes();
+    world_ = world_matrices(model_);
+    list_shown_nodes();
     std::vector<ModelPart> parts;
     for (const std::size_t node : shown_) {
       const int mesh = model_.nodes[node].mesh;
@@ -105,51 +70,38 @@ class PartReader {
       }
     }
     if (parts.empty())
-      return fail(ErrorCode::model_invalid,
-                  fmt::format("'{}': its default scene shows no triangles", document_.name));
+      return fail(
+          ErrorCode::model_invalid,
+          fmt::format("'{}': its default scene shows no triangles, and points and lines cannot carry a decal",
+                      document_.name));
     return parts;
   }
 
  private:
-  /// World matrices of all nodes, and the nodes of the default scene in depth-first order: scene "scene",
-  /// else the first, else every root.
-  void place_nodes() {
+  /// The nodes of the default scene in depth-first order: scene "scene", else the first, else every root.
+  void list_shown_nodes() {
     const std::size_t count = model_.nodes.size();
-    world_.assign(count, Matrix4d::Identity());
-    std::vector<char> has_parent(count, 0);
-    for (const auto& node : model_.nodes)
-      for (const int child : node.children) has_parent[static_cast<std::size_t>(child)] = 1;
-    std::vector<std::size_t> roots;
-    for (std::size_t i = count; i-- > 0;)
-      if (has_parent[i] == 0) roots.push_back(i);
-    visit(roots, [&](std::size_t node, std::optional<std::size_t> parent) {
-      world_[node] = local_matrix(model_.nodes[node]);
-      if (parent) world_[node] = world_[*parent] * world_[node];
-    });
+    std::vector<std::size_t> stack;
     if (count_of(document_, "scenes") != 0) {
-      roots.clear();
       const std::size_t scene = index_of(document_.json, "scene").value_or(0);
       if (const auto* nodes = find(document_.json["scenes"][scene], {"nodes"}))
         for (auto node = nodes->rbegin(); node != nodes->rend(); ++node)
-          roots.push_back(node->get<std::size_t>());
+          stack.push_back(node->get<std::size_t>());
+    } else {
+      std::vector<char> has_parent(count, 0);
+      for (const auto& node : model_.nodes)
+        for (const int child : node.children) has_parent[static_cast<std::size_t>(child)] = 1;
+      for (std::size_t i = count; i-- > 0;)
+        if (has_parent[i] == 0) stack.push_back(i);
     }
     std::vector<char> seen(count, 0);
-    visit(roots, [&](std::size_t node, std::optional<std::size_t>) {
-      if (std::exchange(seen[node], 1) == 0) shown_.push_back(node);
-    });
-  }
-
-  template <class Function>
-  void visit(const std::vector<std::size_t>& roots, Function function) const {
-    std::vector<std::pair<std::size_t, std::optional<std::size_t>>> stack;
-    for (const std::size_t root : roots) stack.emplace_back(root, std::nullopt);
     while (!stack.empty()) {
-      const auto [node, parent] = stack.back();
+      const std::size_t node = stack.back();
       stack.pop_back();
-      function(node, parent);
+      if (std::exchange(seen[node], 1) == 0) shown_.push_back(node);
       const auto& children = model_.nodes[node].children;
       for (auto child = children.rbegin(); child != children.rend(); ++child)
-        stack.emplace_back(static_cast<std::size_t>(*child), node);
+        stack.push_back(static_cast<std::size_t>(*child));
     }
   }
 
@@ -183,11 +135,11 @@ class PartReader {
         part.tangents.push_back({Vec3(&tangents[4 * i]), tangents[4 * i + 3] < 0 ? -1.0 : 1.0});
     }
     APPLIQUE_CHECK(apply_morph_targets(part, entry));
-    APPLIQUE_CHECK(place(part, entry));
+    APPLIQUE_CHECK(place(part));
     APPLIQUE_CHECK(read_uvs(part, entry));
     read_colours(part, entry);
     APPLIQUE_CHECK(read_triangles(part, entry));
-    if (part.normals.empty()) part.normals = smooth_normals(part);
+    if (part.normals.empty()) part.normals = smooth_normals(part.positions, part.triangles);
     for (Vec3& normal : part.normals)
       normal = normal.norm() > 0 ? Vec3(normal.normalized()) : Vec3(Vec3::UnitZ());
     for (Tangent& tangent : part.tangents) tangent.direction.normalize();
@@ -210,85 +162,40 @@ class PartReader {
                 fmt::format("{}: {} has {} elements, POSITION has {}", where_, name, found, expected));
   }
 
-  /// Default weights: the node's, else the mesh's, else none.
   Result<void> apply_morph_targets(ModelPart& part, const tinygltf::Primitive& entry) const {
-    const auto& node_weights = model_.nodes[part.node].weights;
-    const auto& weights = node_weights.empty() ? model_.meshes[part.mesh].weights : node_weights;
+    const PartKey key = {part.node, part.mesh, part.primitive};
+    const auto& weights = rest_weights(model_, key);
     for (std::size_t t = 0; t < std::min(weights.size(), entry.targets.size()); ++t) {
       if (weights[t] == 0) continue;
-      for (const char* name : {"POSITION", "NORMAL"}) {
-        auto& vectors = std::string_view(name) == "POSITION" ? part.positions : part.normals;
-        const auto target = entry.targets[t].find(name);
-        if (target == entry.targets[t].end() || vectors.empty()) continue;
-        APPLIQUE_TRY(const auto values,
-                     read_accessor(model_, target->second, 3,
-                                   fmt::format("{}, morph target {}, {}", where_, t, name)));
-        APPLIQUE_CHECK(
-            check_count(values.size() / 3, vectors.size(), fmt::format("morph target {}'s {}", t, name)));
-        const auto offsets = to_vectors(values);
-        for (std::size_t i = 0; i < vectors.size(); ++i) vectors[i] += weights[t] * offsets[i];
-      }
+      APPLIQUE_TRY(const MorphTarget target, read_morph_target(document_, model_, key, t));
+      for (std::size_t i = 0; i < target.positions.size(); ++i)
+        part.positions[i] += weights[t] * target.positions[i];
+      if (part.normals.empty()) continue;
+      for (std::size_t i = 0; i < target.normals.size(); ++i)
+        part.normals[i] += weights[t] * target.normals[i];
     }
     return {};
   }
 
   /// Carries positions and normals into the scene: by the skin's joints, or by the node.
-  Result<void> place(ModelPart& part, const tinygltf::Primitive& entry) {
-    part.mirrored = world_[part.node].topLeftCorner<3, 3>().determinant() < 0;
-    if (model_.nodes[part.node].skin >= 0 && entry.attributes.contains("JOINTS_0") &&
-        entry.attributes.contains("WEIGHTS_0"))
-      return place_skinned(part, entry);
-    const Matrix4d& matrix = world_[part.node];
-    for (Vec3& p : part.positions) p = (matrix * p.homogeneous()).head<3>();
-    const Eigen::Matrix3d normals = normal_matrix(matrix);
-    for (Vec3& n : part.normals) n = normals * n;
-    for (Tangent& t : part.tangents) t.direction = matrix.topLeftCorner<3, 3>() * t.direction;
-    return {};
-  }
-
-  Result<void> place_skinned(ModelPart& part, const tinygltf::Primitive& entry) {
-    const auto& skin = model_.skins[static_cast<std::size_t>(model_.nodes[part.node].skin)];
-    std::vector<Matrix4d> joints;
-    for (const int joint : skin.joints) joints.push_back(world_[static_cast<std::size_t>(joint)]);
-    if (skin.inverseBindMatrices >= 0) {
-      APPLIQUE_TRY(const auto values,
-                   read_accessor(model_, skin.inverseBindMatrices, 16,
-                                 fmt::format("'{}', skin {}, inverseBindMatrices", document_.name,
-                                             model_.nodes[part.node].skin)));
-      if (values.size() / 16 < joints.size())
-        return fail(ErrorCode::model_invalid,
-                    fmt::format("'{}', skin {}: {} inverse bind matrices for {} joints", document_.name,
-                                model_.nodes[part.node].skin, values.size() / 16, joints.size()));
-      for (std::size_t j = 0; j < joints.size(); ++j)
-        joints[j] *= Eigen::Map<const Matrix4d>(&values[16 * j]);
-    }
-    const std::size_t count = part.positions.size();
-    std::vector<Matrix4d> blend(count, Matrix4d::Zero());
-    std::vector<double> sums(count, 0);
-    for (int set = 0; entry.attributes.contains(fmt::format("JOINTS_{}", set)) &&
-                      entry.attributes.contains(fmt::format("WEIGHTS_{}", set));
-         ++set) {
-      const std::string joints_name = fmt::format("JOINTS_{}", set);
-      APPLIQUE_TRY(const auto indices, read_integers(model_, entry.attributes.at(joints_name), 4,
-                                                     fmt::format("{}, {}", where_, joints_name)));
-      APPLIQUE_CHECK(check_count(indices.size() / 4, count, joints_name));
-      APPLIQUE_TRY(const auto weights, attribute(entry, fmt::format("WEIGHTS_{}", set), 4, count));
-      for (std::size_t i = 0; i < 4 * count; ++i) {
-        if (weights[i] == 0) continue;
-        if (indices[i] >= joints.size())
-          return fail(ErrorCode::model_invalid, fmt::format("{}: {} names joint {} of {}", where_,
-                                                            joints_name, indices[i], joints.size()));
-        blend[i / 4] += weights[i] * joints[indices[i]];
-        sums[i / 4] += weights[i];
-      }
-    }
-    // Files round the weights, so their sum is only about 1; a vertex without any stays with its node.
-    for (std::size_t i = 0; i < count; ++i) {
-      const Matrix4d matrix = sums[i] > 0 ? Matrix4d(blend[i] / sums[i]) : world_[part.node];
+  Result<void> place(ModelPart& part) const {
+    const Matrix4d& world = world_[part.node];
+    part.mirrored = world.topLeftCorner<3, 3>().determinant() < 0;
+    APPLIQUE_TRY(const auto skin,
+                 read_skinning(document_, model_, world_, {part.node, part.mesh, part.primitive}));
+    const auto move = [&](std::size_t i, const Matrix4d& matrix, const Eigen::Matrix3d& normals) {
       part.positions[i] = (matrix * part.positions[i].homogeneous()).head<3>();
-      if (!part.normals.empty()) part.normals[i] = normal_matrix(matrix) * part.normals[i];
+      if (!part.normals.empty()) part.normals[i] = normals * part.normals[i];
       if (!part.tangents.empty())
         part.tangents[i].direction = matrix.topLeftCorner<3, 3>() * part.tangents[i].direction;
+    };
+    const Eigen::Matrix3d world_normals = normal_matrix(world);
+    for (std::size_t i = 0; i < part.positions.size(); ++i) {
+      const auto joints = skin ? blend_joints(*skin, skin->of_vertex(i)) : std::nullopt;
+      if (joints)
+        move(i, *joints, normal_matrix(*joints));
+      else  // A vertex without weights stays with its node.
+        move(i, world, world_normals);
     }
     return {};
   }
@@ -368,7 +275,7 @@ class PartReader {
   const Document& document_;
   const tinygltf::Model& model_;
   std::vector<Warning>& warnings_;
-  std::vector<Matrix4d, Eigen::aligned_allocator<Matrix4d>> world_;
+  std::vector<Matrix4d> world_;
   std::vector<std::size_t> shown_;
   std::size_t triangles_ = 0;
   std::string where_;
@@ -379,6 +286,23 @@ bool allowed(const std::vector<std::size_t>& list, std::optional<std::size_t> it
 }
 
 }  // namespace
+
+std::vector<Vec3> smooth_normals(std::span<const Vec3> positions,
+                                 std::span<const std::array<std::uint32_t, 3>> triangles) {
+  std::unordered_map<std::array<double, 3>, Vec3, PositionHash> sums;
+  const auto key = [&](std::size_t i) {
+    const Vec3& p = positions[i];
+    return std::array<double, 3>{p.x(), p.y(), p.z()};
+  };
+  for (const auto& t : triangles) {
+    const Vec3 normal = (positions[t[1]] - positions[t[0]]).cross(positions[t[2]] - positions[t[0]]);
+    for (const std::uint32_t corner : t) sums.try_emplace(key(corner), Vec3::Zero()).first->second += normal;
+  }
+  std::vector<Vec3> normals(positions.size(), Vec3::UnitZ());
+  for (std::size_t i = 0; i < normals.size(); ++i)
+    if (const auto sum = sums.find(key(i)); sum != sums.end()) normals[i] = sum->second;
+  return normals;
+}
 
 Result<Model> decode_model(Document document) {
   APPLIQUE_CHECK(check_document(document));

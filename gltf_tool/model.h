@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <map>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -77,6 +78,10 @@ Result<Model> load_model(const std::filesystem::path& path);
 
 /// The same for a document in memory (an edited one, say).
 Result<Model> decode_model(Document document);
+
+/// Area-weighted vertex normals of any length, smooth across vertices at one position.
+std::vector<Vec3> smooth_normals(std::span<const Vec3> positions,
+                                 std::span<const std::array<std::uint32_t, 3>> triangles);
 
 /// Decodes an image of the document. Errors as read_image's, naming the image.
 Result<Image> load_model_image(const Model& model, std::size_t image);

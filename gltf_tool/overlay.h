@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -9,22 +10,34 @@
 #include "applique/base/types.h"
 
 #include "document.h"
+#include "rig.h"
 
 namespace applique {
 
-/// A decal as triangles of its own, in scene space.
+/// The part of a decal that lies on one node, as triangles of its own.
 struct OverlayMesh {
-  std::vector<Vec3> positions;             ///< At the rest pose.
-  std::vector<Vec3> normals;               ///< Unit.
+  std::optional<std::size_t> node;  ///< The node it moves with; none: it stays where the scene is at rest.
+  std::vector<Vec3> positions;      ///< In the space of the node's mesh, or in scene space.
+  std::vector<Vec3> normals;        ///< Unit, likewise.
   std::vector<std::array<double, 2>> uvs;  ///< Image pixels divided by the image's size: [0, 1], v down.
   std::vector<std::array<std::uint32_t, 3>>
-      triangles;  ///< Counter-clockwise seen from outside; at least one.
+      triangles;          ///< At least one; winding as in the node's mesh, counter-clockwise without a node.
+  bool mirrored = false;  ///< The node mirrors.
+  std::size_t influences_per_vertex = 0;  ///< A multiple of 4; 0: no skin.
+  std::vector<Influence> influences;  ///< By vertex, the heaviest first; the weights sum to 1, or are all 0.
+  std::vector<MorphTarget> targets;   ///< As many as the node's mesh has.
 };
 
-/// Adds an overlay to the default scene: a mesh and a node named after the decal, with
-/// `extras.applique.decal`, and a material that shows the image (bytes of a PNG, JPEG or WebP) with alpha
-/// blending. Returns the node's index.
+/// Adds a material that shows the image (bytes of a PNG, JPEG or WebP) with alpha blending. Returns its
+/// index.
+std::size_t add_overlay_material(Document& document, const std::string& decal,
+                                 std::span<const std::uint8_t> image_bytes);
+
+/// Adds an overlay: a mesh and a node named after the decal, with `extras.applique.decal`. It is a child of
+/// the node that it follows, or a root of the default scene: with the node's skin where that has one, still
+/// where it follows none. Animations that drive the node's morph targets drive the overlay's. Returns the new
+/// node's index.
 std::size_t add_overlay(Document& document, const std::string& decal, const OverlayMesh& overlay,
-                        std::span<const std::uint8_t> image_bytes);
+                        std::size_t material);
 
 }  // namespace applique

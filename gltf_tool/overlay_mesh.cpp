@@ -10,11 +10,37 @@
 namespace applique {
 namespace {
 
-using Triangle = std::array<std::uint32_t, 3>;
+using Corners = std::array<std::uint32_t, 3>;
+using Origin = DecalMesh::Origin;
+
+/// A part of a patch face.
+struct Triangle {
+  Corners corners = {};
+  PatchFaceId face;
+
+  std::uint32_t operator[](std::size_t k) const { return corners[k]; }
+};
+
 using Edge = std::pair<std::uint32_t, std::uint32_t>;
 
 Edge edge_between(std::uint32_t a, std::uint32_t b) {
   return {std::min(a, b), std::max(a, b)};
+}
+
+/// The place t of the way from a to b, within a face that has both.
+Origin origin_between(const Origin& a, const Origin& b, double t) {
+  Origin origin = a;
+  for (double& weight : origin.weights) weight *= 1 - t;
+  for (std::size_t k = 0; k < 3; ++k) {
+    if (b.weights[k] == 0) continue;
+    std::size_t slot = 0;
+    while (slot < 3 && (origin.weights[slot] == 0 || origin.vertices[slot] != b.vertices[k])) ++slot;
+    for (std::size_t free = 0; slot == 3; ++free)
+      if (origin.weights[free] == 0) slot = free;
+    origin.vertices[slot] = b.vertices[k];
+    origin.weights[slot] += t * b.weights[k];
+  }
+  return origin;
 }
 
 /// The growing mesh; the triangles are linear in the plane.
@@ -24,7 +50,8 @@ struct Builder {
   std::vector<Vec2> plane;
   std::vector<Vec2> image;   ///< Plane units.
   std::vector<double> lift;  ///< Above the surface, in offsets.
-  std::size_t groups = 0;    ///< Of the features; 0 where there is one, whose influence is nobody's concern.
+  std::vector<Origin> origins;
+  std::size_t groups = 0;  ///< Of the features; 0 where there is one, whose influence is nobody's concern.
   std::vector<double> influence;    ///< [vertex * groups + group].
   std::vector<Triangle> triangles;  ///< In the order in which they are to be drawn.
 
@@ -39,6 +66,7 @@ struct Builder {
     plane.push_back((1 - t) * plane[a] + t * plane[b]);
     image.push_back((1 - t) * image[a] + t * image[b]);
     lift.push_back((1 - t) * lift[a] + t * lift[b]);
+    origins.push_back(origin_between(origins[a], origins[b], t));
     for (std::size_t g = 0; g < groups; ++g)
       influence.push_back((1 - t) * influence_at(a, g) + t * influence_at(b, g));
     return static_cast<std::uint32_t>(positions.size() - 1);
@@ -61,7 +89,7 @@ Builder gather_faces(const Model& model, const SolvedDecal& decal) {
     const ModelPart& part = model.parts[source.part];
     const auto corners = decal.surface->mesh.corners(face.mesh_face);
     const double area = (corners[1] - corners[0]).cross(corners[2] - corners[0]).norm();
-    Triangle triangle = {};
+    Corners triangle = {};
     for (std::size_t k = 0; k < 3; ++k) {
       const PatchVertexId vertex = face.vertices[k];
       if (index[vertex] == ~0U) {
@@ -71,6 +99,7 @@ Builder gather_faces(const Model& model, const SolvedDecal& decal) {
         mesh.plane.push_back(map.plane[vertex]);
         mesh.image.push_back(map.image[vertex]);
         mesh.lift.push_back(0);
+        mesh.origins.push_back({{vertex}, {1, 0, 0}});
         for (std::size_t g = 0; g < mesh.groups; ++g)
           mesh.influence.push_back(map.influence[vertex.value * mesh.groups + g]);
       }
@@ -78,7 +107,7 @@ Builder gather_faces(const Model& model, const SolvedDecal& decal) {
       mesh.lift[triangle[k]] = 1 + map.sheet[f];  // The highest comes last.
       mesh.normals[triangle[k]] += area * part.normals[part.triangles[source.triangle][k]];
     }
-    mesh.triangles.push_back(triangle);
+    mesh.triangles.push_back({triangle, f});
   }
   return mesh;
 }
@@ -93,13 +122,18 @@ class Divider {
   void run() {
     constexpr int max_rounds = 10;  // halves an edge a thousandfold
     for (int round = 0; round < max_rounds; ++round) {
-      middles_.clear();
-      for (const Triangle& triangle : mesh_->triangles) mark(triangle);
-      if (middles_.empty()) return;
+      if (is_done()) return;
       std::vector<Triangle> divided;
       for (const Triangle& triangle : mesh_->triangles) divide(triangle, divided);
       mesh_->triangles = std::move(divided);
     }
+  }
+
+  /// Whether nothing is to be divided; finds out what is.
+  bool is_done() {
+    middles_.clear();
+    for (const Triangle& triangle : mesh_->triangles) mark(triangle);
+    return middles_.empty();
   }
 
  private:
@@ -159,6 +193,7 @@ class Divider {
   void divide(const Triangle& t, std::vector<Triangle>& out) const {
     std::array<std::uint32_t, 3> middle = {};  // of edge k, from corner k to corner k + 1
     std::array<bool, 3> split = {};
+    const auto put = [&](const Corners& corners) { out.push_back({corners, t.face}); };
     int splits = 0;
     for (std::size_t k = 0; k < 3; ++k) {
       const auto found = middles_.find(edge_between(t[k], t[(k + 1) % 3]));
@@ -170,14 +205,15 @@ class Divider {
     if (splits == 0) {
       out.push_back(t);
     } else if (splits == 3) {
-      out.insert(out.end(), {{t[0], middle[0], middle[2]},
-                             {middle[0], t[1], middle[1]},
-                             {middle[2], middle[1], t[2]},
-                             {middle[0], middle[1], middle[2]}});
+      put({t[0], middle[0], middle[2]});
+      put({middle[0], t[1], middle[1]});
+      put({middle[2], middle[1], t[2]});
+      put(middle);
     } else if (splits == 1) {
       const std::size_t k = split[0] ? 0 : split[1] ? 1 : 2;
       const std::uint32_t apex = t[(k + 2) % 3];
-      out.insert(out.end(), {{t[k], middle[k], apex}, {middle[k], t[(k + 1) % 3], apex}});
+      put({t[k], middle[k], apex});
+      put({middle[k], t[(k + 1) % 3], apex});
     } else {
       const std::size_t whole = !split[0] ? 0 : !split[1] ? 1 : 2;  // the edge that stays
       const std::uint32_t a = t[whole];
@@ -185,7 +221,9 @@ class Divider {
       const std::uint32_t c = t[(whole + 2) % 3];
       const std::uint32_t bc = middle[(whole + 1) % 3];
       const std::uint32_t ca = middle[(whole + 2) % 3];
-      out.insert(out.end(), {{ca, bc, c}, {a, b, bc}, {a, bc, ca}});
+      put({ca, bc, c});
+      put({a, b, bc});
+      put({a, bc, ca});
     }
   }
 
@@ -212,7 +250,7 @@ class BorderCut {
           polygon.push_back(crossing(a, b));
       }
       for (std::size_t k = 2; k < polygon.size(); ++k)
-        kept.push_back({polygon[0], polygon[k - 1], polygon[k]});
+        kept.push_back({{polygon[0], polygon[k - 1], polygon[k]}, triangle.face});
     }
     mesh_->triangles = std::move(kept);
   }
@@ -244,12 +282,18 @@ void cut_at_image_border(Builder& mesh, const ImageFrame& frame) {
   }
 }
 
+/// A deviation in pixels, less a margin: it is looked for at some points of a triangle only.
+double plane_units(const SolvedDecal& decal, double max_deviation) {
+  constexpr double margin = 0.8;
+  return margin * max_deviation / decal.region.frame().pixels_per_unit();
+}
+
 /// Without vertices that no triangle uses.
-OverlayMesh compact(const Builder& mesh, const ImageFrame& frame, double offset) {
-  OverlayMesh out;
+DecalMesh compact(const Builder& mesh, const ImageFrame& frame, double offset) {
+  DecalMesh out;
   std::vector<std::uint32_t> index(mesh.positions.size(), ~0U);
   for (const Triangle& triangle : mesh.triangles) {
-    Triangle renumbered = {};
+    Corners renumbered = {};
     for (std::size_t k = 0; k < 3; ++k) {
       const std::uint32_t v = triangle[k];
       if (index[v] == ~0U) {
@@ -259,26 +303,35 @@ OverlayMesh compact(const Builder& mesh, const ImageFrame& frame, double offset)
         const Pixel pixel = frame.to_pixel(mesh.image[v]);
         out.positions.emplace_back(mesh.positions[v] + offset * mesh.lift[v] * normal);
         out.normals.push_back(normal);
+        out.heights.push_back(offset * mesh.lift[v]);
+        out.origins.push_back(mesh.origins[v]);
         out.uvs.push_back({pixel.x / frame.width, pixel.y / frame.height});
       }
       renumbered[k] = index[v];
     }
     out.triangles.push_back(renumbered);
+    out.faces.push_back(triangle.face);
   }
   return out;
 }
 
 }  // namespace
 
-OverlayMesh build_overlay_mesh(const Model& model, const SolvedDecal& decal, double offset,
-                               double max_deviation) {
-  const ImageFrame& frame = decal.region.frame();
-  // The test looks at some points of a triangle: a margin for those between them.
-  constexpr double margin = 0.8;
+DecalMesh build_overlay_mesh(const Model& model, const SolvedDecal& decal, double offset,
+                             double max_deviation) {
   Builder mesh = gather_faces(model, decal);
-  Divider(mesh, decal.map.warp, margin * max_deviation / frame.pixels_per_unit()).run();
-  cut_at_image_border(mesh, frame);
-  return compact(mesh, frame, offset);
+  Divider(mesh, decal.map.warp, plane_units(decal, max_deviation)).run();
+  cut_at_image_border(mesh, decal.region.frame());
+  return compact(mesh, decal.region.frame(), offset);
+}
+
+DecalMesh build_whole_mesh(const Model& model, const SolvedDecal& decal, double offset) {
+  return compact(gather_faces(model, decal), decal.region.frame(), offset);
+}
+
+bool is_linear(const Model& model, const SolvedDecal& decal, double max_deviation) {
+  Builder mesh = gather_faces(model, decal);
+  return Divider(mesh, decal.map.warp, plane_units(decal, max_deviation)).is_done();
 }
 
 double default_offset(const Model& model) {

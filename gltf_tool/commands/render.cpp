@@ -16,6 +16,15 @@ Result<Camera> find_camera(const RenderArguments& arguments, const Model& model,
   return camera_on_decal(solved.decals.front(), size);
 }
 
+nlohmann::ordered_json describe(const Camera& camera, PictureSize size) {
+  const auto list = [](const Vec3& v) { return nlohmann::ordered_json{v.x(), v.y(), v.z()}; };
+  return {{"eye", list(camera.eye)},
+          {"target", list(camera.target)},
+          {"up", list(camera.up)},
+          {"vertical_fov_degrees", camera.vertical_fov},
+          {"size", {size.width, size.height}}};
+}
+
 }  // namespace
 
 CLI::App* add_render_command(CLI::App& app, RenderArguments& arguments) {
@@ -47,14 +56,18 @@ CLI::App* add_render_command(CLI::App& app, RenderArguments& arguments) {
           ->excludes(elevation)
           ->excludes(zoom);
   command->add_option("--decal", arguments.decal, "Look at the decal of this name instead")->needs(job);
+  command->add_option("--camera", arguments.camera,
+                      "Write where the picture is taken from (JSON), so that other programs can take it too");
   command->add_option("--device", arguments.device, "The Vulkan device, by index or by a part of its name");
   return command;
 }
 
 Result<void> run_render(const RenderArguments& arguments, const CommonArguments& common) {
   APPLIQUE_CHECK(check_writable(arguments.output));
-  APPLIQUE_CHECK(
-      check_distinct({arguments.output}, {arguments.model, arguments.job.value_or(arguments.model)}));
+  if (arguments.camera) APPLIQUE_CHECK(check_writable(*arguments.camera));
+  std::vector<std::filesystem::path> outputs = {arguments.output};
+  if (arguments.camera) outputs.push_back(*arguments.camera);
+  APPLIQUE_CHECK(check_distinct(outputs, {arguments.model, arguments.job.value_or(arguments.model)}));
   const PictureSize size = parse_size(arguments.size);
   Progress progress(!common.quiet);
   progress.show("loading the model", 0);
@@ -66,6 +79,7 @@ Result<void> run_render(const RenderArguments& arguments, const CommonArguments&
   APPLIQUE_TRY(const Device device, Device::create(request));
   APPLIQUE_TRY(const Image picture, render_model(device, model, camera, size));
   APPLIQUE_TRY(const auto png, encode_png(picture));
+  if (arguments.camera) APPLIQUE_CHECK(write_json(*arguments.camera, describe(camera, size)));
   return write_file(arguments.output, png);
 }
 

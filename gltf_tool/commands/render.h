@@ -21,7 +21,8 @@ struct RenderArguments {
   double zoom = 1;                           ///< 1: the whole model fills the picture; larger: closer.
   std::optional<std::filesystem::path> job;  ///< With `decal`: the camera looks straight at that decal.
   std::string decal;
-  std::string device;  ///< Index or part of a name; empty: the best one.
+  std::optional<std::filesystem::path> camera;  ///< To be written: where the picture is taken from.
+  std::string device;                           ///< Index or part of a name; empty: the best one.
 };
 
 CLI::App* add_render_command(CLI::App& app, RenderArguments& arguments);

@@ -92,7 +92,7 @@ RenderMesh tubes(const SurfaceLines& lines, double radius) {
 
 /// The decal's own mesh with another picture on it.
 RenderMesh painted_decal(const Model& model, const SolvedDecal& decal, const Image& painting) {
-  const OverlayMesh overlay = build_overlay_mesh(model, decal, default_offset(model));
+  const DecalMesh overlay = build_overlay_mesh(model, decal, default_offset(model));
   RenderMesh mesh;
   for (const Vec3& position : overlay.positions) mesh.positions.push_back(to_floats(position));
   for (const Vec3& normal : overlay.normals) mesh.normals.push_back(to_floats(normal));

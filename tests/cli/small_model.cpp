@@ -61,9 +61,13 @@ struct BufferWriter {
 };
 
 json write_mesh(BufferWriter& buffer, const SmallMesh& mesh) {
-  std::vector<std::vector<double>> positions;
-  for (const Vec3& p : mesh.positions) positions.push_back({p.x(), p.y(), p.z()});
-  json attributes = {{"POSITION", buffer.add_floats(positions, "VEC3")}};
+  const auto rows = [](const std::vector<Vec3>& vectors) {
+    std::vector<std::vector<double>> list;
+    for (const Vec3& v : vectors) list.push_back({v.x(), v.y(), v.z()});
+    return list;
+  };
+  json attributes = {{"POSITION", buffer.add_floats(rows(mesh.positions), "VEC3")}};
+  if (!mesh.normals.empty()) attributes["NORMAL"] = buffer.add_floats(rows(mesh.normals), "VEC3");
   if (!mesh.uvs.empty()) {
     std::vector<std::vector<double>> uvs;
     for (const auto& uv : mesh.uvs) uvs.push_back({uv[0], uv[1]});

@@ -16,6 +16,7 @@ namespace applique {
 struct SmallMesh {
   std::string name;
   std::vector<Vec3> positions;
+  std::vector<Vec3> normals;               ///< Empty: none.
   std::vector<std::array<double, 2>> uvs;  ///< Empty: none.
   std::vector<std::array<std::uint32_t, 3>> triangles;
   int material = 0;

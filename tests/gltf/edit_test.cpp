@@ -254,7 +254,8 @@ OverlayMesh make_overlay() {
 TEST(AddOverlay, IsANamedMeshOfTheScene) {
   Document document = make_document({0}, {{0}}, 1);
   const auto png = make_png(8, teal);
-  const std::size_t node = add_overlay(document, "crest", make_overlay(), png);
+  const std::size_t node =
+      add_overlay(document, "crest", make_overlay(), add_overlay_material(document, "crest", png));
   const Model model = decode_model(document).value();
   ASSERT_EQ(model.parts.size(), 2u);
   const ModelPart& part = model.parts[1];
@@ -287,7 +288,8 @@ TEST_P(EditedModels, ReportNothingNewToTheValidator) {
       const auto materials = isolate_materials(document, std::vector<PartKey>{key_of(first)});
       set_slot_image(document, materials[0], MaterialSlot::base_color, make_png(16, teal));
     }
-    add_overlay(document, "crest", make_overlay(), make_png(8, teal));
+    add_overlay(document, "crest", make_overlay(),
+                add_overlay_material(document, "crest", make_png(8, teal)));
     const auto output = folder / (std::to_string(names.size()) + "_" + path.stem().string() + GetParam());
     const auto saved = save_document(document, output);
     ASSERT_TRUE(saved) << path << ": " << saved.error().message;

@@ -215,7 +215,9 @@ TEST(LoadModel, NamesWhatItCannotUse) {
             "'made.glb', node 0: translation holds \"x\", expected a finite number");
   EXPECT_EQ(error_of(make_model("", R"(,"scale":[0,0,0])", "")),
             "'made.glb': all its triangles are one point");
-  EXPECT_EQ(error_of(make_model("", "", R"(,"mode":1)")), "'made.glb': its default scene shows no triangles");
+  EXPECT_EQ(error_of(make_model("", "", R"(,"mode":1)")),
+            "'made.glb': its default scene shows no triangles, and points and lines cannot carry a "
+            "decal");
 }
 
 TEST(LoadModel, DoesNotTrustCounts) {

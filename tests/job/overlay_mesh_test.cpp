@@ -10,6 +10,7 @@
 
 #include "cli/command.h"
 #include "cli/small_model.h"
+#include "overlay_layout.h"
 #include "solve_job.h"
 
 using namespace applique;
@@ -56,7 +57,7 @@ class OverlayMeshTest : public testing::Test {
 /// Largest distance, in pixels, of the mesh's texture coordinates from the exact map, which is told
 /// `influence(plane, sheet)`. The mesh's offset is 0.01.
 template <class Influence>
-double farthest_from_exact(const OverlayMesh& mesh, const SolvedDecal& decal, const Influence& influence) {
+double farthest_from_exact(const DecalMesh& mesh, const SolvedDecal& decal, const Influence& influence) {
   const DecalMap& map = decal.map;
   const ImageFrame& frame = decal.region.frame();
   // The embedding of a plane is a similarity: two points of a face give it.
@@ -92,11 +93,11 @@ double farthest_from_exact(const OverlayMesh& mesh, const SolvedDecal& decal, co
 }
 
 TEST_F(OverlayMeshTest, LinearTextureCoordinatesFollowTheExactMap) {
-  const OverlayMesh mesh = build_overlay_mesh(job_.model, decal(), 0.01);
+  const DecalMesh mesh = build_overlay_mesh(job_.model, decal(), 0.01);
   const auto none = [](Vec2, long) { return std::vector<double>(); };
   EXPECT_LT(farthest_from_exact(mesh, decal(), none), 0.25);
   // The test has teeth: without dividing, it is much more.
-  const OverlayMesh coarse = build_overlay_mesh(job_.model, decal(), 0, 1000);
+  const DecalMesh coarse = build_overlay_mesh(job_.model, decal(), 0, 1000);
   EXPECT_GT(mesh.triangles.size(), 4 * coarse.triangles.size());
 }
 
@@ -130,7 +131,7 @@ TEST_F(OverlayMeshTest, SheetsLieOverOneAnotherFromTheBottomUp) {
     map.image[v] = map.warp(map.plane[v], at);
   }
 
-  const OverlayMesh mesh = build_overlay_mesh(job_.model, decal(), 0.01);
+  const DecalMesh mesh = build_overlay_mesh(job_.model, decal(), 0.01);
   std::vector<double> heights;
   for (const auto& t : mesh.triangles)
     for (const std::uint32_t v : t) heights.push_back(mesh.positions[v].z());
@@ -145,7 +146,7 @@ TEST_F(OverlayMeshTest, SheetsLieOverOneAnotherFromTheBottomUp) {
 TEST_F(OverlayMeshTest, HasNoCracks) {
   // Nor where an upper sheet begins.
   job_.decals.front().map.sheet[PatchFaceId(0)] = 1;
-  const OverlayMesh mesh = build_overlay_mesh(job_.model, decal(), 0.01);
+  const DecalMesh mesh = build_overlay_mesh(job_.model, decal(), 0.01);
   std::map<std::pair<std::uint32_t, std::uint32_t>, int> edges;
   for (const auto& t : mesh.triangles)
     for (std::size_t k = 0; k < 3; ++k) {
@@ -165,7 +166,7 @@ TEST_F(OverlayMeshTest, HasNoCracks) {
 }
 
 TEST_F(OverlayMeshTest, LiesAboveTheSurfaceAndInsideTheImage) {
-  const OverlayMesh mesh = build_overlay_mesh(job_.model, decal(), 0.01);
+  const DecalMesh mesh = build_overlay_mesh(job_.model, decal(), 0.01);
   for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
     EXPECT_NEAR(mesh.positions[i].z(), 0.01, 1e-12);
     EXPECT_NEAR(mesh.normals[i].z(), 1, 1e-12);
@@ -178,6 +179,62 @@ TEST_F(OverlayMeshTest, LiesAboveTheSurfaceAndInsideTheImage) {
     EXPECT_GT(
         (mesh.positions[t[1]] - mesh.positions[t[0]]).cross(mesh.positions[t[2]] - mesh.positions[t[0]]).z(),
         0);
+}
+
+/// Red is x, green is y, in pixels.
+Image make_ramp() {
+  Image image = make_image(image_size, image_size, {0, 0, 0, 0xffff});
+  for (int y = 0; y < image_size; ++y)
+    for (int x = 0; x < image_size; ++x) {
+      image.pixel(x, y)[0] = static_cast<std::uint16_t>(257 * x);
+      image.pixel(x, y)[1] = static_cast<std::uint16_t>(257 * y);
+    }
+  return image;
+}
+
+TEST_F(OverlayMeshTest, OnASkinTrianglesStayWholeAndThePictureIsBent) {
+  job_.model.document.json["nodes"][0]["skin"] = 0;
+  job_.decals.front().image = make_ramp();
+  const OverlayLayout layout = lay_out_overlay(job_.model, decal(), 0.01);
+  EXPECT_FALSE(layout.divided_skin);
+  const DecalMap& map = decal().map;
+  EXPECT_EQ(layout.mesh.triangles.size(), std::count(map.textured.begin(), map.textured.end(), char(1)));
+  // What a triangle shows at a place is what the exact map puts there.
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> unit(0, 1);
+  int compared = 0;
+  for (std::size_t t = 0; t < layout.mesh.triangles.size(); ++t)
+    for (int sample = 0; sample < 40; ++sample) {
+      const double root = std::sqrt(unit(random)), split = unit(random);
+      const std::array<double, 3> weights = {1 - root, root * (1 - split), root * split};
+      Vec2 plane = 0, uv = 0;
+      for (std::size_t k = 0; k < 3; ++k) {
+        const std::uint32_t v = layout.mesh.triangles[t][k];
+        plane += weights[k] * map.plane[layout.mesh.origins[v].vertices[0]];
+        uv += weights[k] * Vec2(layout.mesh.uvs[v][0], layout.mesh.uvs[v][1]);
+      }
+      const Pixel exact = decal().region.frame().to_pixel(map.warp(plane));
+      if (std::min(exact.x, exact.y) < 2 || std::max(exact.x, exact.y) > image_size - 2) continue;
+      const std::uint16_t* texel =
+          layout.picture.pixel(int(uv.real() * layout.picture.width), int(uv.imag() * layout.picture.height));
+      EXPECT_NEAR(texel[0] / 257.0, exact.x - 0.5, 1);
+      EXPECT_NEAR(texel[1] / 257.0, exact.y - 0.5, 1);
+      EXPECT_EQ(texel[3], 0x8000) << "the decal's opacity";
+      ++compared;
+    }
+  EXPECT_GT(compared, 500);
+  EXPECT_EQ(layout.picture.pixel(0, 0)[3], 0) << "nothing around it";
+}
+
+TEST_F(OverlayMeshTest, OnASkinAnImageThatLiesOverItselfIsDivided) {
+  job_.model.document.json["nodes"][0]["skin"] = 0;
+  DecalMap& map = job_.decals.front().map;
+  map.groups = map.warp.groups = 2;
+  map.warp.group = {0, 0, 0, 1, 1};
+  map.influence.assign(2 * map.patch.vertices.size(), 0.5);
+  const OverlayLayout layout = lay_out_overlay(job_.model, decal(), 0.01);
+  EXPECT_TRUE(layout.divided_skin);
+  EXPECT_EQ(layout.picture.width, image_size);
 }
 
 TEST_F(OverlayMeshTest, PictureCarriesTheOpacity) {

@@ -1,0 +1,240 @@
+#include "attach_overlay.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+#include <span>
+#include <tuple>
+#include <utility>
+
+#include <Eigen/LU>
+
+#include "rig.h"
+
+namespace applique {
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Matrix4d;
+
+/// A vertex of a part, and how much it counts.
+struct Source {
+  std::uint32_t vertex = 0;
+  double weight = 0;
+
+  auto operator<=>(const Source&) const = default;
+};
+using Sources = std::array<Source, 3>;
+
+bool is_invertible(const Matrix4d& matrix) {
+  constexpr double flattest = 1e-12;
+  const Matrix3d linear = matrix.topLeftCorner<3, 3>();
+  return std::abs(linear.determinant()) > flattest * std::pow(linear.norm(), 3);
+}
+
+/// Whether these vertices of a part can be taken back from the scene into the mesh's space.
+bool can_follow(const Rig& rig, const std::set<std::uint32_t>& vertices) {
+  if (!rig.skin) return is_invertible(rig.world);
+  return std::all_of(vertices.begin(), vertices.end(), [&](std::uint32_t v) {
+    return is_invertible(blend_joints(*rig.skin, rig.skin->of_vertex(v)).value_or(rig.world));
+  });
+}
+
+/// The sources' influences, joint by joint, the heaviest first, at most `count` of them.
+std::vector<Influence> blend_influences(const Skinning& skin, const Sources& sources, std::size_t count) {
+  std::map<std::uint32_t, double> weights;
+  for (const auto& [vertex, share] : sources) {
+    if (share == 0) continue;
+    double sum = 0;
+    for (const Influence& influence : skin.of_vertex(vertex)) sum += influence.weight;
+    for (const Influence& influence : skin.of_vertex(vertex))
+      if (influence.weight > 0) weights[influence.joint] += share * influence.weight / sum;
+  }
+  std::vector<Influence> blend;
+  for (const auto& [joint, weight] : weights) blend.push_back({joint, weight});
+  std::stable_sort(blend.begin(), blend.end(),
+                   [](const Influence& a, const Influence& b) { return a.weight > b.weight; });
+  blend.resize(std::min(blend.size(), count));
+  double sum = 0;
+  for (const Influence& influence : blend) sum += influence.weight;
+  for (Influence& influence : blend) influence.weight /= sum;
+  // As floats they are to sum to 1 as well.
+  float rest = 1;
+  for (std::size_t i = 1; i < blend.size(); ++i) rest -= static_cast<float>(blend[i].weight);
+  if (!blend.empty()) blend.front().weight = rest;
+  blend.resize(count);
+  return blend;
+}
+
+Vec3 blend_vectors(const std::vector<Vec3>& vectors, const Sources& sources) {
+  Vec3 sum = Vec3::Zero();
+  if (vectors.empty()) return sum;
+  for (const auto& [vertex, weight] : sources) sum += weight * vectors[vertex];
+  return sum;
+}
+
+/// Grows the overlay of one node.
+class NodeOverlay {
+ public:
+  NodeOverlay(const SolvedDecal& decal, const DecalMesh& mesh) : decal_(&decal), mesh_(&mesh) {}
+
+  /// `rig` is the part's; null where the overlay stays in the scene.
+  void add_triangle(std::size_t triangle, std::uint32_t part_index, const ModelPart& part, const Rig* rig) {
+    const auto& corners = mesh_->triangles[triangle];
+    std::array<std::uint32_t, 3> added = {};
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Sources sources =
+          rig != nullptr ? sources_of(corners[k], mesh_->faces[triangle], part) : Sources();
+      const auto [found, fresh] =
+          index_.try_emplace(Key(corners[k], rig != nullptr && moves(*rig) ? part_index : 0,
+                                 rig != nullptr && moves(*rig) ? sources : Sources()),
+                             static_cast<std::uint32_t>(overlay.positions.size()));
+      if (fresh) add_vertex(corners[k], sources, rig);
+      added[k] = found->second;
+    }
+    if (rig != nullptr && part.mirrored) std::swap(added[1], added[2]);
+    overlay.triangles.push_back(added);
+  }
+
+  OverlayMesh overlay;
+
+ private:
+  /// One vertex of the decal's mesh is several here where it blends different vertices of the model.
+  using Key = std::tuple<std::uint32_t, std::uint32_t, Sources>;
+
+  static bool moves(const Rig& rig) { return rig.skin || !rig.targets.empty(); }
+
+  [[nodiscard]] Sources sources_of(std::uint32_t vertex, PatchFaceId face, const ModelPart& part) const {
+    const DecalMesh::Origin& origin = mesh_->origins[vertex];
+    const PatchFace& patch_face = decal_->map.patch.faces[face];
+    const auto& triangle = part.triangles[decal_->surface->source(patch_face.mesh_face).triangle];
+    Sources sources;
+    for (std::size_t i = 0; i < 3; ++i) {
+      if (origin.weights[i] == 0) continue;
+      for (std::size_t k = 0; k < 3; ++k)
+        if (patch_face.vertices[k] == origin.vertices[i]) sources[k] = {triangle[k], origin.weights[i]};
+    }
+    return sources;
+  }
+
+  void add_vertex(std::uint32_t vertex, const Sources& sources, const Rig* rig) {
+    const Vec3& position = mesh_->positions[vertex];
+    const Vec3& normal = mesh_->normals[vertex];
+    overlay.uvs.push_back(mesh_->uvs[vertex]);
+    if (rig == nullptr) {
+      overlay.positions.push_back(position);
+      overlay.normals.push_back(normal);
+      return;
+    }
+    const Matrix4d inverse = add_influences(sources, *rig).inverse();
+    const Matrix3d linear = inverse.topLeftCorner<3, 3>();
+    const double height = (linear * (mesh_->heights[vertex] * normal)).norm();
+    // Normals go by the inverse transpose; from the scene back, that is the transpose of the matrix itself.
+    Vec3 unposed_normal = (linear.inverse().transpose() * normal).normalized();
+    for (std::size_t t = 0; t < rig->turns.size(); ++t)
+      unposed_normal -= rig->rest_weights[t] * blend_vectors(rig->turns[t], sources);
+    unposed_normal.normalize();
+    Vec3 unposed = (inverse * position.homogeneous()).head<3>();
+    for (std::size_t t = 0; t < overlay.targets.size(); ++t)
+      unposed -= weight_of(*rig, t) * add_target(t, sources, *rig, unposed_normal, height);
+    overlay.positions.push_back(unposed);
+    overlay.normals.push_back(unposed_normal);
+  }
+
+  static double weight_of(const Rig& rig, std::size_t target) {
+    return target < rig.rest_weights.size() ? rig.rest_weights[target] : 0;
+  }
+
+  /// Returns the matrix that the new vertex moves by at rest.
+  Matrix4d add_influences(const Sources& sources, const Rig& rig) {
+    const std::size_t count = overlay.influences_per_vertex;
+    if (count == 0) return rig.world;
+    std::vector<Influence> blend(count);
+    std::optional<Matrix4d> matrix;
+    if (rig.skin) {
+      blend = blend_influences(*rig.skin, sources, count);
+      matrix = blend_joints(*rig.skin, blend);
+      if (matrix &&
+          !is_invertible(*matrix)) {  // Between joints that face each other: with the nearest corner.
+        const auto nearest = *std::max_element(
+            sources.begin(), sources.end(), [](const auto& a, const auto& b) { return a.weight < b.weight; });
+        blend = blend_influences(*rig.skin, {Source{nearest.vertex, 1}}, count);
+        matrix = blend_joints(*rig.skin, blend);
+      }
+    }
+    overlay.influences.insert(overlay.influences.end(), blend.begin(), blend.end());
+    return matrix.value_or(rig.world);
+  }
+
+  /// Returns how far the target moves the new vertex: with the surface, and with its normal.
+  Vec3 add_target(std::size_t t, const Sources& sources, const Rig& rig, const Vec3& normal, double height) {
+    MorphTarget& target = overlay.targets[t];
+    Vec3 move = Vec3::Zero();
+    if (t < rig.targets.size()) {
+      const Vec3 turned = normal + blend_vectors(rig.turns[t], sources);
+      move = blend_vectors(rig.targets[t].positions, sources);
+      if (turned.norm() > 0) move += height * (turned.normalized() - normal);
+      if (!rig.targets[t].normals.empty()) {
+        target.normals.resize(target.positions.size(), Vec3::Zero());
+        target.normals.push_back(blend_vectors(rig.targets[t].normals, sources));
+      }
+    }
+    target.positions.push_back(move);
+    if (!target.normals.empty()) target.normals.resize(target.positions.size(), Vec3::Zero());
+    return move;
+  }
+
+  const SolvedDecal* decal_;
+  const DecalMesh* mesh_;
+  std::map<Key, std::uint32_t> index_;
+};
+
+}  // namespace
+
+Result<std::vector<OverlayMesh>> attach_overlay(const Model& model, const SolvedDecal& decal,
+                                                const DecalMesh& mesh) {
+  const auto source_of = [&](std::size_t triangle) -> const ModelSurface::Source& {
+    return decal.surface->source(decal.map.patch.faces[mesh.faces[triangle]].mesh_face);
+  };
+  std::map<std::uint32_t, std::set<std::uint32_t>> covered;  // by part: the vertices under the decal
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    const auto& [part, triangle] = source_of(t);
+    const auto& corners = model.parts[part].triangles[triangle];
+    covered[part].insert(corners.begin(), corners.end());
+  }
+  std::set<std::uint32_t> parts;
+  for (const auto& [part, vertices] : covered) parts.insert(part);
+  APPLIQUE_TRY(const auto rigs, read_rigs(model, parts));
+
+  // What one of a node's parts cannot do, none of them does.
+  std::map<std::optional<std::size_t>, NodeOverlay> overlays;
+  std::set<std::size_t> fixed;
+  for (const auto& [part, rig] : rigs)
+    if (!can_follow(rig, covered.at(part))) fixed.insert(model.parts[part].node);
+  const auto node_of = [&](std::uint32_t part) -> std::optional<std::size_t> {
+    const std::size_t node = model.parts[part].node;
+    if (fixed.contains(node)) return std::nullopt;
+    return node;
+  };
+  for (const auto& [part, rig] : rigs) {
+    const auto node = node_of(part);
+    OverlayMesh& overlay = overlays.try_emplace(node, decal, mesh).first->second.overlay;
+    overlay.node = node;
+    if (!node) continue;
+    overlay.mirrored = model.parts[part].mirrored;
+    if (rig.skin)
+      overlay.influences_per_vertex = std::max(overlay.influences_per_vertex, rig.skin->per_vertex);
+    overlay.targets.resize(std::max(overlay.targets.size(), rig.targets.size()));
+  }
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    const std::uint32_t part = source_of(t).part;
+    const auto node = node_of(part);
+    overlays.at(node).add_triangle(t, part, model.parts[part], node ? &rigs.at(part) : nullptr);
+  }
+  std::vector<OverlayMesh> list;
+  for (auto& [node, grown] : overlays) list.push_back(std::move(grown.overlay));
+  return list;
+}
+
+}  // namespace applique
