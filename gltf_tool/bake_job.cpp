@@ -14,6 +14,7 @@
 #include "instances.h"
 #include "overlay.h"
 #include "overlay_layout.h"
+#include "write_tangents.h"
 
 namespace applique {
 namespace {
@@ -301,6 +302,7 @@ Result<BakedJob> bake_job(SolvedJob& job, GpuBaker& baker, const StageCallback& 
   };
   show("preparing the textures", 0);
   APPLIQUE_TRY(auto targets, plan_bake(job, baked.document));
+  APPLIQUE_CHECK(write_tangents(job.model, targets, baked.document));
   APPLIQUE_TRY(auto works, prepare(job, baked.document, std::move(targets), encoding));
   baked.times.add("load_textures", watch.lap());
   APPLIQUE_CHECK(transfer_all(job, works, baker, baked, show));

@@ -1,0 +1,17 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "bake_plan.h"
+
+namespace applique {
+
+/// Gives the primitives under targets that get a normal map their tangents, where they have none:
+/// MikkTSpace's, as the normals were turned into, so that viewers need not make their own. A primitive
+/// without normals of its own has flat ones, and then a file's tangents do not count; a vertex between
+/// surfaces that the texture shows mirrored against one another has no one tangent: such primitives stay
+/// without. `document` has the targets' materials. Errors: those of load_model.
+Result<void> write_tangents(const Model& model, std::span<const BakeTarget> targets, Document& document);
+
+}  // namespace applique
