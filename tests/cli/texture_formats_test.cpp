@@ -10,6 +10,7 @@
 #include "gltf/test_models.h"
 #include "gltf/validator.h"
 #include "media_type.h"
+#include "texture_encoding.h"
 
 namespace applique {
 namespace {
@@ -113,6 +114,15 @@ TEST_F(TextureFormats, TransparencyStaysAPng) {
   EXPECT_EQ(report()["warnings"][0]["code"], "texture_is_png");
   ASSERT_EQ(bake(job_at(0, 0, 0), "-o out.glb --texture-format webp --texture-quality 100").status, 0);
   EXPECT_EQ(texture_of(output(), "Sheet").pixel(3, 0)[3], 257 * 100) << "WebP has transparency";
+}
+
+TEST_F(TextureFormats, WhatIsTooLargeForWebpIsAPng) {
+  const Image wide = make_image(webp_largest_side + 1, 2, {0, 0, 0, 0xffff});
+  const auto encoded = encode_texture(wide, {TextureFormat::webp, 80, std::nullopt});
+  ASSERT_TRUE(encoded) << encoded.error().message;
+  EXPECT_EQ(encoded->format, TextureFormat::png);
+  EXPECT_EQ(media_type_of(encoded->bytes), "image/png");
+  EXPECT_EQ(encoded->why_png, "WebP has at most 16383 texels a side");
 }
 
 TEST_F(TextureFormats, OverlaysAreStoredAlike) {

@@ -221,8 +221,11 @@ INSTANTIATE_TEST_SUITE_P(
               "job.json: /decals/0/opacity: found \"half\", expected a number from 0 to 1"},
         Fault{"/decals/0/opactiy", "1",
               "job.json: /decals/0: found the unknown property 'opactiy', expected 'opacity'"},
-        Fault{"/decals/0/blend", "\"add\"",
-              "job.json: /decals/0/blend: found \"add\", expected \"normal\", \"multiply\" or \"screen\""},
+        Fault{
+            "/decals/0/blend", "\"dissolve\"",
+            "job.json: /decals/0/blend: found \"dissolve\", expected a blend mode: normal, multiply, screen, "
+            "overlay, darken, lighten, color-dodge, color-burn, hard-light, soft-light, difference, "
+            "exclusion, hue, saturation, color, luminosity, add, erase"},
         Fault{
             "/decals/0/method", "\"lscm\"",
             "job.json: /decals/0/method: found \"lscm\", expected \"applique\", \"paper\" (the paper's own "
