@@ -69,10 +69,8 @@ class Checker {
         if (const auto* object = find(texture, {"extensions", extension}))
           reference(*object, "source", "images", where);
     });
-    each("materials", [&](const Json& material, const std::string& where) {
-      if (const auto* texture = find(material, {"pbrMetallicRoughness", "baseColorTexture"}))
-        reference(*texture, "index", "textures", where + ", baseColorTexture", true);
-    });
+    each("materials",
+         [&](const Json& material, const std::string& where) { check_material(material, where); });
     each("meshes", [&](const Json& mesh, const std::string& where) { check_mesh(mesh, where); });
     each("skins", [&](const Json& skin, const std::string& where) {
       references(skin, "joints", "nodes", where, true);
@@ -282,6 +280,22 @@ class Checker {
       if (indices != 5121 && indices != 5123 && indices != 5125)
         problem(inner, fmt::format("indices have componentType {}, expected 5121, 5123 or 5125", indices));
     }
+  }
+
+  void check_material(const Json& material, const std::string& where) {
+    numbers(material, "emissiveFactor", 3, where);
+    for (const char* key : {"normalTexture", "occlusionTexture", "emissiveTexture"})
+      if (const auto* texture = find(material, {key}))
+        reference(*texture, "index", "textures", where + ", " + key, true);
+    const auto* pbr = find(material, {"pbrMetallicRoughness"});
+    if (pbr == nullptr) return;
+    numbers(*pbr, "baseColorFactor", 4, where);
+    for (const char* key : {"metallicFactor", "roughnessFactor"})
+      if (const auto* factor = find(*pbr, {key}); factor != nullptr && !factor->is_number())
+        problem(where, fmt::format("{} is {}, expected a number", key, shown(*factor)));
+    for (const char* key : {"baseColorTexture", "metallicRoughnessTexture"})
+      if (const auto* texture = find(*pbr, {key}))
+        reference(*texture, "index", "textures", where + ", " + key, true);
   }
 
   void check_attributes(const Json* attributes, const std::string& where) {

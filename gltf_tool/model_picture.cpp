@@ -6,6 +6,7 @@
 #include <future>
 #include <map>
 #include <optional>
+#include <set>
 #include <utility>
 #include <vector>
 
@@ -33,19 +34,24 @@ std::optional<std::size_t> shown_image(const Model& model, const ModelPart& part
 constexpr std::array shown_slots = {MaterialSlot::base_color, MaterialSlot::metallic_roughness,
                                     MaterialSlot::normal, MaterialSlot::emissive};
 
-/// The images that the parts show, decoded side by side.
+/// The images that the parts show, decoded side by side. Without its base colour a part would not be itself;
+/// what else cannot be read is left out.
 Result<std::map<std::size_t, Image>> load_images(const Model& model) {
   std::map<std::size_t, std::future<Result<Image>>> loading;
+  std::set<std::size_t> needed;
   for (const ModelPart& part : model.parts)
     for (const MaterialSlot slot : shown_slots) {
       const auto image = shown_image(model, part, slot);
+      if (image && slot == MaterialSlot::base_color) needed.insert(*image);
       if (image && !loading.contains(*image))
         loading[*image] =
             std::async(std::launch::async, [&model, image] { return load_model_image(model, *image); });
     }
   std::map<std::size_t, Image> images;
-  for (auto& [index, image] : loading) {
-    APPLIQUE_TRY(images[index], image.get());
+  for (auto& [index, loaded] : loading) {
+    auto image = loaded.get();
+    if (!image && !needed.contains(index)) continue;
+    APPLIQUE_TRY(images[index], std::move(image));
   }
   return images;
 }
@@ -67,7 +73,7 @@ RenderMesh mesh_of(const Model& model, const ModelPart& part, const std::map<std
     mesh.base_colour_factor[c] = static_cast<float>(material.base_colour_factor[c]);
   const auto texture = [&](MaterialSlot slot) -> const Image* {
     const auto image = shown_image(model, part, slot);
-    return image ? &images.at(*image) : nullptr;
+    return image && images.contains(*image) ? &images.at(*image) : nullptr;
   };
   mesh.base_colour = texture(MaterialSlot::base_color);
   mesh.normal = texture(MaterialSlot::normal);
@@ -76,7 +82,7 @@ RenderMesh mesh_of(const Model& model, const ModelPart& part, const std::map<std
   const auto& json = model.document.json.at("materials").at(*part.material);
   const auto number = [&](std::initializer_list<const char*> path) {
     const auto* value = find(json, path);
-    return value != nullptr ? value->get<float>() : 1.0F;
+    return value != nullptr && value->is_number() ? value->get<float>() : 1.0F;
   };
   // Without such a texture the factors say little: files leave them at metal.
   if (mesh.metallic_roughness != nullptr) {

@@ -215,6 +215,13 @@ TEST(LoadModel, NamesWhatItCannotUse) {
             "'made.glb', node 0: translation holds \"x\", expected a finite number");
   EXPECT_EQ(error_of(make_model("", R"(,"scale":[0,0,0])", "")),
             "'made.glb': all its triangles are one point");
+  EXPECT_EQ(error_of(make_model(R"(,"materials":[{"emissiveFactor":"x"}])", "", "")),
+            "'made.glb', material 0: emissiveFactor is not an array of 3 numbers");
+  EXPECT_EQ(
+      error_of(make_model(R"(,"materials":[{"pbrMetallicRoughness":{"metallicFactor":"shiny"}}])", "", "")),
+      "'made.glb', material 0: metallicFactor is \"shiny\", expected a number");
+  EXPECT_EQ(error_of(make_model(R"(,"materials":[{"normalTexture":{"index":3}}])", "", "")),
+            "'made.glb', material 0, normalTexture: index is 3, but there are 0 textures");
   EXPECT_EQ(error_of(make_model("", "", R"(,"mode":1)")),
             "'made.glb': its default scene shows no triangles, and points and lines cannot carry a "
             "decal");
