@@ -10,6 +10,7 @@
 #include "edit.h"
 #include "overlay.h"
 #include "overlay_mesh.h"
+#include "separate_uvs.h"
 
 namespace applique {
 namespace {
@@ -178,12 +179,14 @@ Result<std::unique_ptr<GpuBaker>> create_baker(Device device) {
 
 Result<BakedJob> bake_job(SolvedJob& job, GpuBaker& baker, const StageCallback& on_stage) {
   BakedJob baked;
-  baked.document = job.model.document;
   Stopwatch watch;
   const auto show = [&](const std::string& stage, double done) {
     if (on_stage) on_stage(stage, done);
   };
   show("preparing the textures", 0);
+  APPLIQUE_TRY(const auto separated, separate_uvs(job));
+  baked.times.add("separate_uvs", watch.lap());
+  baked.document = job.model.document;
   APPLIQUE_TRY(auto targets, plan_bake(job, baked.document));
   APPLIQUE_TRY(auto works, prepare(job, baked.document, std::move(targets)));
   baked.times.add("load_textures", watch.lap());
@@ -194,7 +197,12 @@ Result<BakedJob> bake_job(SolvedJob& job, GpuBaker& baker, const StageCallback& 
   baked.times.add("encode_textures", watch.lap());
   APPLIQUE_CHECK(add_overlays(job, baked.document));
   baked.times.add("overlay", watch.lap());
-  for (const TargetWork& work : works) baked.textures.push_back(work.report);
+  for (TargetWork& work : works) {
+    for (const std::uint32_t part : work.target.parts)
+      if (std::binary_search(separated.begin(), separated.end(), part))
+        work.report.separated_triangles += job.model.parts[part].triangles.size();
+    baked.textures.push_back(work.report);
+  }
   return baked;
 }
 

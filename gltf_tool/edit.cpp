@@ -50,7 +50,8 @@ std::vector<std::size_t> isolate_meshes(Document& document, std::span<const Part
   return result;
 }
 
-/// For each part, which of its mesh's touched instances it belongs to: 0 for the first node, and so on.
+}  // namespace
+
 std::vector<std::size_t> instance_ranks(std::span<const PartKey> parts) {
   std::map<std::size_t, std::set<std::size_t>> nodes;  // mesh -> touched nodes
   for (const PartKey& part : parts) nodes[part.mesh].insert(part.node);
@@ -61,6 +62,8 @@ std::vector<std::size_t> instance_ranks(std::span<const PartKey> parts) {
   }
   return ranks;
 }
+
+namespace {
 
 /// How often the document's meshes use a material, by primitives and by variants.
 std::map<std::size_t, std::size_t> count_material_uses(const Document& document) {
@@ -115,17 +118,6 @@ bool is_shown_elsewhere(Document& document, std::size_t image, std::size_t textu
   return shown;
 }
 
-std::size_t count_view_uses(const Document& document, std::size_t view) {
-  std::size_t uses = 0;
-  const auto count = [&](const Json& object, auto& self) -> void {
-    if (object.is_object() && index_of(object, "bufferView") == view) ++uses;
-    if (object.is_structured())
-      for (const auto& member : object) self(member, self);
-  };
-  count(document.json, count);
-  return uses;
-}
-
 /// Takes an image that nothing uses out of the list, unless something here unknown may count images.
 void remove_image(Document& document, std::size_t image) {
   if (find(document.json, {"extensions", "EXT_lights_image_based"}) != nullptr) return;
@@ -160,7 +152,8 @@ void replace_image(Document& document, std::size_t image, std::span<const std::u
 }
 
 /// The texture's only source becomes `png`: in place of an image that it alone uses, else as a new image.
-void set_texture_image(Document& document, std::size_t texture, std::span<const std::uint8_t> png) {
+void set_texture_image(Document& document, std::size_t texture, std::span<const std::uint8_t> png,
+                       const std::string& name) {
   std::vector<std::size_t> own;
   auto& entry = document.json["textures"][texture];
   each_source(entry, [&](const Json& object) {
@@ -174,7 +167,7 @@ void set_texture_image(Document& document, std::size_t texture, std::span<const 
   std::erase_if(own, [&](std::size_t image) { return is_shown_elsewhere(document, image, texture); });
   std::sort(own.begin(), own.end());
   if (own.empty()) {
-    const std::size_t image = add_image(document, png, "base_colour");
+    const std::size_t image = add_image(document, png, name);
     document.json["textures"][texture]["source"] = image;
     return;
   }
@@ -257,7 +250,21 @@ void set_base_colour_image(Document& document, std::size_t material, std::span<c
     textures.push_back(std::move(copy));
     pbr["baseColorTexture"]["index"] = texture;
   }
-  set_texture_image(document, texture, png);
+  set_texture_image(document, texture, png, "base_colour");
+}
+
+void set_slot_images(Document& document, std::size_t material, const std::vector<SlotPointer>& slots,
+                     std::span<const std::uint8_t> png, const std::string& name) {
+  auto& entry = document.json["materials"][material];
+  auto& textures = document.json["textures"];
+  std::size_t texture = entry[slots.front()]["index"].get<std::size_t>();
+  if (count_texture_uses(document, texture) > slots.size()) {
+    Json copy = textures[texture];
+    texture = textures.size();
+    textures.push_back(std::move(copy));
+  }
+  for (const SlotPointer& slot : slots) entry[slot]["index"] = texture;
+  set_texture_image(document, texture, png, name);
 }
 
 }  // namespace applique

@@ -16,6 +16,10 @@ struct PartKey {
   std::size_t primitive = 0;
 };
 
+/// For each part, which of its mesh's instances among the parts it belongs to: 0 for the first node, and so
+/// on.
+std::vector<std::size_t> instance_ranks(std::span<const PartKey> parts);
+
 /// Makes the material of each given part (all that a decal touches) one that nothing else uses, and returns
 /// its index, by part. A mesh that other nodes show too is copied for the node (accessors stay shared); a
 /// material that other primitives, or variants, use is copied; a part without a material gets one. Parts that
@@ -29,6 +33,15 @@ std::vector<std::size_t> isolate_materials(Document& document, std::span<const P
 /// becomes 1, so the image must have it in its colours. The replaced image's bytes go where nothing else uses
 /// them.
 void set_base_colour_image(Document& document, std::size_t material, std::span<const std::uint8_t> png);
+
+/// A texture reference in a material: /normalTexture, /extensions/KHR_materials_clearcoat/clearcoatTexture.
+using SlotPointer = Document::Json::json_pointer;
+
+/// Shows an image (PNG bytes) in some slots of an isolated material that show one texture so far. The texture
+/// is copied first when others use it; its sampler, and the slots' texture coordinates, stay. `name` is for a
+/// new image.
+void set_slot_images(Document& document, std::size_t material, const std::vector<SlotPointer>& slots,
+                     std::span<const std::uint8_t> png, const std::string& name);
 
 /// Adds an image of PNG bytes: in the chunk of a GLB, else as a new file named after `name`. Returns its
 /// index.

@@ -29,6 +29,13 @@ using RegionChoice = std::variant<AutomaticRegion, ContourRegion, AlphaRegion, R
 
 enum class DecalOutput { bake, overlay };
 
+/// What becomes of a baked decal on triangles whose texels other triangles show too, or that have none.
+enum class UvConflict {
+  separate,  ///< The triangles get texture space of their own.
+  error,     ///< The job fails.
+  share,     ///< The decal appears on the other triangles as well.
+};
+
 /// A pin as the job file states it.
 struct JobFeature {
   Pixel image;
@@ -50,6 +57,7 @@ struct DecalJob {
   double opacity = 1;                ///< 0..1.
   BlendMode blend = BlendMode::normal;
   DecalOutput output = DecalOutput::bake;
+  UvConflict uv_conflict = UvConflict::separate;
   std::optional<double> offset;  ///< Of an overlay, scene units, >= 0; left out: default_offset().
   Method method = Method::applique;
   PlanarLimits planar;                ///< Of Method::planar.

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
+#include <optional>
 
 #include "document.h"
 #include "model.h"
@@ -16,10 +18,22 @@ struct UvMapping {
 
   /// The extension's matrix T R S; its angles are counter-clockwise as seen, with v down.
   [[nodiscard]] std::array<double, 2> apply(const std::array<double, 2>& uv) const;
+
+  bool operator==(const UvMapping&) const = default;
 };
 
 /// The mapping of a material of a checked document; that of TEXCOORD_0 where it has no base-colour texture.
 UvMapping read_uv_mapping(const Document::Json& material);
+
+/// The mapping of one texture reference ({"index": …, "texCoord": …}) of a material.
+UvMapping read_texture_mapping(const Document::Json& reference);
+
+/// The image of a texture that can be decoded here: WebP where offered, else the core one; KTX2 and DDS only
+/// where alone.
+std::optional<std::size_t> image_of_texture(const Document::Json& texture);
+
+/// The wrap modes of a texture.
+std::array<WrapMode, 2> read_wrap_modes(const Document& document, const Document::Json& texture);
 
 /// How a material of a checked document shows its base colour.
 ModelMaterial read_material(const Document& document, const Document::Json& material);

@@ -367,8 +367,12 @@ Result<Model> load_model(const std::filesystem::path& path) {
 }
 
 Result<Image> load_model_image(const Model& model, std::size_t image) {
-  APPLIQUE_TRY(const auto bytes, read_image_bytes(model.document, image));
-  return decode_image(bytes, fmt::format("'{}', image {}", model.document.name, image));
+  return load_document_image(model.document, image);
+}
+
+Result<Image> load_document_image(const Document& document, std::size_t image) {
+  APPLIQUE_TRY(const auto bytes, read_image_bytes(document, image));
+  return decode_image(bytes, fmt::format("'{}', image {}", document.name, image));
 }
 
 ModelSurface build_surface(const Model& model, const std::vector<std::size_t>& nodes,

@@ -17,6 +17,7 @@ struct TextureReport {
   int width = 0;         ///< Texels.
   int height = 0;        ///< Texels.
   bool created = false;  ///< The material had no base-colour texture before.
+  std::uint64_t separated_triangles = 0;  ///< That got texture space of their own.
   std::uint64_t covered_texels = 0;
   std::uint64_t gutter_texels = 0;
   std::uint64_t shared_texels = 0;

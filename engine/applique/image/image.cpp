@@ -120,7 +120,10 @@ Result<Image> read_image(const std::filesystem::path& path) {
   return decode_image(bytes, path.string());
 }
 
-Result<Image> decode_image(std::span<const std::uint8_t> bytes, const std::string& name) {
+namespace {
+
+/// Without `pixels`, the image's `rgba` stays empty.
+Result<Image> decode(std::span<const std::uint8_t> bytes, const std::string& name, bool pixels) {
   const auto invalid = [&](const std::string& reason) {
     return fail(ErrorCode::image_invalid, fmt::format("image '{}': {}", name, reason));
   };
@@ -163,10 +166,22 @@ Result<Image> decode_image(std::span<const std::uint8_t> bytes, const std::strin
   image.height = spec.height;
   image.channels = spec.nchannels;
   image.bits = wide ? 16 : 8;
+  if (!pixels) return image;
   const bool done = wide ? read_pixels<std::uint16_t>(*input, OIIO::TypeDesc::UINT16, image)
                          : read_pixels<std::uint8_t>(*input, OIIO::TypeDesc::UINT8, image);
   if (!done) return invalid(reason_of(*input));
   return image;
+}
+
+}  // namespace
+
+Result<Image> decode_image(std::span<const std::uint8_t> bytes, const std::string& name) {
+  return decode(bytes, name, true);
+}
+
+Result<std::array<int, 2>> image_size(std::span<const std::uint8_t> bytes, const std::string& name) {
+  APPLIQUE_TRY(const Image image, decode(bytes, name, false));
+  return std::array{image.width, image.height};
 }
 
 Result<std::vector<std::uint8_t>> encode_png(const Image& image) {
