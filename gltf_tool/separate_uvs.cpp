@@ -16,6 +16,7 @@
 #include "edit.h"
 #include "geometry.h"
 #include "move_triangles.h"
+#include "tangent_turns.h"
 #include "texel_map.h"
 #include "texture_slots.h"
 #include "uv_conflict.h"
@@ -98,11 +99,23 @@ class Separation {
     APPLIQUE_TRY(const UvLayout layout, lay_out_uvs(job_, request));
     warn_of_scale(group, request, layout);
     const std::size_t set = uv_set(group, request, slots, images);
+    std::vector<OldCorners> corners;
+    for (std::size_t s = 0; s < slots.size(); ++s) {
+      APPLIQUE_TRY(auto old, old_corners(slots[s], images[s], request));
+      corners.push_back(std::move(old));
+    }
+    Tangents tangents;
+    const bool turned = turns_frames(slots, images, corners, layout);
     for (std::size_t s = 0; s < slots.size(); ++s) {
       if (images[s].rgba.empty()) continue;
-      APPLIQUE_CHECK(resample(slots[s], images[s], group, request, layout, material, set));
+      std::vector<std::array<FrameTurn, 3>> turns;
+      if (turned && slots[s].content == TexelContent::normal) {
+        APPLIQUE_TRY(turns, turn_frames(request, layout, corners[s], tangents));
+      }
+      APPLIQUE_CHECK(resample(slots[s], images[s], group, request, layout, material, set,
+                              std::move(corners[s]), std::move(turns)));
     }
-    return move(request, layout, material, set);
+    return move(request, layout, material, set, tangents);
   }
 
   /// Replaces the job's model, and returns the parts that are new.
@@ -122,6 +135,10 @@ class Separation {
   }
 
  private:
+  using OldCorners = std::vector<std::array<Texel, 3>>;
+  /// By triangle of the request and corner; without an entry where a part has no normals. Empty: they stay.
+  using Tangents = std::map<std::pair<std::uint32_t, std::uint32_t>, std::array<std::array<float, 4>, 3>>;
+
   /// A material for the triangles: what the rest of the parts shows stays as it was.
   std::size_t isolate(const TextureGroup& group, const LayoutRequest& request) {
     std::map<std::uint32_t, std::size_t> taken;
@@ -205,6 +222,78 @@ class Separation {
     return used && group.has_texture ? sets : 0;
   }
 
+  /// Whether directions in some texture would mean something else in the layout.
+  static bool turns_frames(const std::vector<TextureSlots>& slots, const std::vector<Image>& images,
+                           const std::vector<OldCorners>& corners, const UvLayout& layout) {
+    for (std::size_t s = 0; s < slots.size(); ++s)
+      if (slots[s].content == TexelContent::normal && !images[s].rgba.empty() &&
+          !same_frames(corners[s], layout.corners))
+        return true;
+    return false;
+  }
+
+  /// The turn of each triangle's frame; the new tangents go into `tangents`.
+  Result<std::vector<std::array<FrameTurn, 3>>> turn_frames(const LayoutRequest& request,
+                                                            const UvLayout& layout, const OldCorners& corners,
+                                                            Tangents& tangents) {
+    std::map<std::uint32_t, std::vector<std::size_t>> parts;
+    for (std::size_t i = 0; i < request.triangles.size(); ++i) parts[request.triangles[i].part].push_back(i);
+    std::vector<std::array<FrameTurn, 3>> turns(request.triangles.size());
+    for (const auto& [p, members] : parts) {
+      APPLIQUE_TRY(TangentFrames frames, read_frames(job_.model.parts[p]));
+      for (const std::size_t i : members) {
+        frames.triangles.push_back(job_.model.parts[p].triangles[request.triangles[i].triangle]);
+        frames.old_corners.push_back(corners[i]);
+        frames.new_corners.push_back(layout.corners[i]);
+      }
+      const bool mirrored = job_.model.parts[p].mirrored;
+      if (mirrored) turn_over(frames);
+      TangentTurns turned = turn_tangents(frames);
+      for (std::size_t j = 0; j < members.size(); ++j) {
+        if (mirrored) {
+          std::swap(turned.turns[j][1], turned.turns[j][2]);
+          std::swap(turned.tangents[j][1], turned.tangents[j][2]);
+        }
+        turns[members[j]] = turned.turns[j];
+        if (!frames.normals.empty())
+          tangents[{p, request.triangles[members[j]].triangle}] = turned.tangents[j];
+      }
+    }
+    return turns;
+  }
+
+  Result<TangentFrames> read_frames(const ModelPart& part) {
+    const auto& entry = geometry_->meshes[part.mesh].primitives[part.primitive];
+    const std::string where = fmt::format("mesh {}, primitive {}", part.mesh, part.primitive);
+    const auto read = [&](const char* name, int components) -> Result<std::vector<double>> {
+      const auto attribute = entry.attributes.find(name);
+      if (attribute == entry.attributes.end()) return std::vector<double>();
+      APPLIQUE_TRY(auto values,
+                   read_accessor(*geometry_, attribute->second, components, where + ", " + name));
+      values.resize(part.positions.size() * static_cast<std::size_t>(components), 0);
+      return values;
+    };
+    TangentFrames frames;
+    APPLIQUE_TRY(const auto positions, read("POSITION", 3));
+    for (std::size_t i = 0; i + 2 < positions.size(); i += 3)
+      frames.positions.emplace_back(positions[i], positions[i + 1], positions[i + 2]);
+    APPLIQUE_TRY(const auto normals, read("NORMAL", 3));
+    for (std::size_t i = 0; i + 2 < normals.size(); i += 3)
+      frames.normals.emplace_back(normals[i], normals[i + 1], normals[i + 2]);
+    if (normals.empty()) return frames;  // without normals, tangents do not count
+    APPLIQUE_TRY(const auto tangents, read("TANGENT", 4));
+    for (std::size_t i = 0; i + 3 < tangents.size(); i += 4)
+      frames.tangents.push_back({tangents[i], tangents[i + 1], tangents[i + 2], tangents[i + 3]});
+    return frames;
+  }
+
+  /// The decoder exchanged two corners where the node mirrors: back to the file's order.
+  static void turn_over(TangentFrames& frames) {
+    for (auto& triangle : frames.triangles) std::swap(triangle[1], triangle[2]);
+    for (auto* corners : {&frames.old_corners, &frames.new_corners})
+      for (auto& corner : *corners) std::swap(corner[1], corner[2]);
+  }
+
   Result<std::vector<std::array<Texel, 3>>> old_corners(const TextureSlots& slot, const Image& image,
                                                         const LayoutRequest& request) {
     std::map<std::uint32_t, std::vector<double>> uvs;
@@ -236,8 +325,10 @@ class Separation {
 
   Result<void> resample(const TextureSlots& slot, const Image& image, const TextureGroup& group,
                         const LayoutRequest& request, const UvLayout& layout, std::size_t material,
-                        std::size_t set) {
+                        std::size_t set, OldCorners corners, std::vector<std::array<FrameTurn, 3>> turns) {
     Resampling resampling;
+    resampling.old_corners = std::move(corners);
+    resampling.turns = std::move(turns);
     resampling.texture = &image;
     const auto& texture = document_.json["textures"][slot.texture];
     const auto [wrap_u, wrap_v] = read_wrap_modes(document_, texture);
@@ -246,7 +337,6 @@ class Separation {
     resampling.nearest = is_nearest(texture);
     resampling.content = slot.content;
     resampling.layout = &layout;
-    APPLIQUE_TRY(resampling.old_corners, old_corners(slot, image, request));
     const UvMapping base = group.material
                                ? read_uv_mapping(job_.model.document.json["materials"][*group.material])
                                : UvMapping();
@@ -259,7 +349,32 @@ class Separation {
     APPLIQUE_TRY(const auto png, encode_png(resample_texture(resampling)));
     for (const SlotPointer& pointer : slot.slots) show_whole(material, pointer, set);
     set_slot_images(document_, material, slot.slots, png, slot.name);
+    clamp(document_.json["materials"][material][slot.slots.front()]["index"].get<std::size_t>());
     return {};
+  }
+
+  /// Nothing of an atlas lies beyond its border, and textures of any size can be clamped.
+  void clamp(std::size_t texture) {
+    constexpr int to_edge = 33071;
+    auto& textures = document_.json["textures"];
+    auto& samplers = document_.json["samplers"];
+    if (samplers.is_null()) samplers = Json::array();
+    const auto old = index_of(textures[texture], "sampler");
+    Json sampler = old ? samplers[*old] : Json::object();
+    sampler["wrapS"] = to_edge;
+    sampler["wrapT"] = to_edge;
+    const bool alone = old && std::count_if(textures.begin(), textures.end(), [&](const Json& other) {
+                                return index_of(other, "sampler") == old;
+                              }) == 1;
+    const auto same = std::find(samplers.begin(), samplers.end(), sampler);
+    if (alone) {
+      samplers[*old] = std::move(sampler);
+    } else if (same != samplers.end()) {
+      textures[texture]["sampler"] = same - samplers.begin();
+    } else {
+      textures[texture]["sampler"] = samplers.size();
+      samplers.push_back(std::move(sampler));
+    }
   }
 
   [[nodiscard]] bool is_nearest(const Json& texture) const {
@@ -313,7 +428,7 @@ class Separation {
   }
 
   Result<void> move(const LayoutRequest& request, const UvLayout& layout, std::size_t material,
-                    std::size_t set) {
+                    std::size_t set, const Tangents& tangents) {
     std::map<std::uint32_t, MovedTriangles> parts;
     for (std::size_t i = 0; i < request.triangles.size(); ++i) {
       const SeparatedTriangle& t = request.triangles[i];
@@ -324,6 +439,8 @@ class Separation {
         for (std::size_t c = 0; c < 2; ++c)
           uvs[k][c] = static_cast<float>(layout.corners[i][k][c] / layout.size[c]);
       moved.uvs.push_back(uvs);
+      if (const auto turned = tangents.find({t.part, t.triangle}); turned != tangents.end())
+        moved.tangents.push_back(turned->second);
     }
     for (auto& [p, moved] : parts) {
       const ModelPart& part = job_.model.parts[p];

@@ -10,9 +10,13 @@ using Json = Document::Json;
 
 /// By the name of the slot, in the core and in the Khronos material extensions.
 TexelContent content_of(std::string_view slot) {
-  if (slot == "normalTexture" || slot == "clearcoatNormalTexture") return TexelContent::normal;
+  for (const std::string_view normal : {"normalTexture", "clearcoatNormalTexture", "anisotropyTexture"})
+    if (slot == normal) return TexelContent::normal;
   for (const std::string_view colour : {"emissiveTexture", "diffuseTexture", "specularGlossinessTexture"})
     if (slot == colour) return TexelContent::colour;
+  // Their values are in the alpha, which is never encoded; the colours beside them are another slot's.
+  for (const std::string_view alpha : {"sheenRoughnessTexture", "specularTexture"})
+    if (slot == alpha) return TexelContent::colour;
   return slot.find("Color") != std::string_view::npos ? TexelContent::colour : TexelContent::data;
 }
 

@@ -1,9 +1,11 @@
 #include "uv_atlas.h"
 
 #include <algorithm>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <numeric>
+#include <utility>
 
 #include "applique/base/error.h"
 
@@ -59,10 +61,6 @@ class Skyline {
   std::vector<Step> steps_;
 };
 
-int round_up(std::int64_t value, int step) {
-  return static_cast<int>((value + step - 1) / step * step);
-}
-
 }  // namespace
 
 int pack_boxes(std::vector<AtlasBox>& boxes, int width) {
@@ -79,7 +77,7 @@ int pack_boxes(std::vector<AtlasBox>& boxes, int width) {
   return height;
 }
 
-std::optional<std::array<int, 2>> pack_atlas(std::vector<AtlasBox>& boxes, int step, int most) {
+std::optional<std::array<int, 2>> pack_atlas(std::vector<AtlasBox>& boxes, int most) {
   std::int64_t area = 0;
   int widest = 1;
   for (const AtlasBox& box : boxes) {
@@ -88,21 +86,21 @@ std::optional<std::array<int, 2>> pack_atlas(std::vector<AtlasBox>& boxes, int s
     if (box.width > most || box.height > most) return std::nullopt;
   }
   if (area > std::int64_t{most} * most) return std::nullopt;
+  const auto size_of = [](const std::array<int, 2>& sides) { return std::int64_t{sides[0]} * sides[1]; };
+  const auto length_of = [](const std::array<int, 2>& sides) { return sides[0] + sides[1]; };
   std::optional<std::array<int, 2>> best;
   std::vector<AtlasBox> placed = boxes;
-  // From a square's side on, a few widths: the packing wastes less in one than in another.
-  int width = 1;
-  while (std::int64_t{width} * width < area) width *= 2;
-  for (int tried = std::max(round_up(widest, step), round_up(width / 2, step)), i = 0; i < 8; ++i) {
-    const int side = std::min(tried, most / step * step);
-    if (side < widest) break;
-    const int height = round_up(pack_boxes(placed, side), step);
-    if (height <= most && (!best || std::int64_t{side} * height < std::int64_t{(*best)[0]} * (*best)[1])) {
-      best = {side, height};
-      boxes = placed;
-    }
-    if (side != tried) break;
-    tried = round_up(std::int64_t{tried} * 5 / 4 + 1, step);
+  // Widths that are not far from a square's side.
+  constexpr int longest = 4;
+  for (int width = 1; width <= most && std::int64_t{width} * width <= longest * longest * area; width *= 2) {
+    if (width < widest || std::int64_t{width} * width * longest * longest < area) continue;
+    const std::array<int, 2> sides = {
+        width, static_cast<int>(std::bit_ceil(static_cast<unsigned>(pack_boxes(placed, width))))};
+    if (sides[1] > most) continue;
+    if (best && std::pair(size_of(sides), length_of(sides)) >= std::pair(size_of(*best), length_of(*best)))
+      continue;
+    best = sides;
+    boxes = placed;
   }
   return best;
 }

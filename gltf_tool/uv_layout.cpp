@@ -17,7 +17,7 @@ namespace applique {
 namespace {
 
 constexpr int largest_side = 8192;
-constexpr int side_step = 64;
+constexpr int best_grid = 64;
 constexpr int full_gutter = 16;      // texels, as a transfer's
 constexpr double slimmest = 32;      // length to width of what a circle on the surface is in the texture
 constexpr double coarsest = 32;      // pixels to a texel, along a line
@@ -181,13 +181,12 @@ class Packing {
       : request_(request), corners_(std::move(charting.corners)), charts_(std::move(charting.charts)) {}
 
   /// With `fineness` texels a unit, at most `most` texels a side.
-  std::optional<UvLayout> pack(double scale, int fineness, int gutter_texels, int most) const {
+  std::optional<UvLayout> pack(double scale, int fineness, int gutter_texels, int most, int grid) const {
     UvLayout layout;
     layout.corners = corners_;
     layout.charts = charts_;
     layout.fineness = fineness;
     layout.scale = scale;
-    const int grid = scale == 1 ? request_.grid : 1;
     layout.gutter = (gutter_texels + fineness - 1) / fineness;
     std::vector<AtlasBox> boxes;
     for (AtlasChart& chart : layout.charts) {
@@ -211,7 +210,7 @@ class Packing {
       }
       boxes.push_back(box);
     }
-    const auto size = pack_boxes_into(boxes, grid, fineness, most);
+    const auto size = pack_boxes_into(boxes, fineness, most);
     if (!size) return std::nullopt;
     layout.size = *size;
     for (std::size_t i = 0; i < boxes.size(); ++i) {
@@ -226,6 +225,19 @@ class Packing {
     return layout;
   }
 
+  /// At the old scale. Moved by multiples of many texels, charts keep as many levels of the old mip pyramid:
+  /// of as many as cost little room.
+  std::optional<UvLayout> pack_exactly(int fineness, int gutter, int most) const {
+    constexpr double dearest = 1.5;
+    auto least = pack(1, fineness, gutter, most, request_.grid);
+    if (!least) return std::nullopt;
+    const auto area = [](const UvLayout& layout) { return double{1} * layout.size[0] * layout.size[1]; };
+    for (int grid = best_grid; grid > request_.grid; grid /= 2)
+      if (auto layout = pack(1, fineness, gutter, most, grid))
+        if (area(*layout) <= dearest * area(*least)) return layout;
+    return least;
+  }
+
   /// The largest scale that fits, below `upper`.
   std::optional<UvLayout> pack_scaled(double upper, int gutter, int most) const {
     std::optional<UvLayout> best;
@@ -234,7 +246,7 @@ class Packing {
     double tried = std::min(upper, 1.0);
     constexpr int halvings = 24;
     for (int i = 0; i < halvings && high - low > 0.01 * high; ++i) {
-      if (auto layout = pack(tried, 1, gutter, most)) {
+      if (auto layout = pack(tried, 1, gutter, most, 1)) {
         best = std::move(layout);
         low = tried;
       } else {
@@ -246,9 +258,9 @@ class Packing {
   }
 
  private:
-  std::optional<std::array<int, 2>> pack_boxes_into(std::vector<AtlasBox>& boxes, int grid, int fineness,
+  std::optional<std::array<int, 2>> pack_boxes_into(std::vector<AtlasBox>& boxes, int fineness,
                                                     int most) const {
-    if (request_.created_size == 0) return pack_atlas(boxes, std::max(side_step, grid), most / fineness);
+    if (request_.created_size == 0) return pack_atlas(boxes, most / fineness);
     for (const AtlasBox& box : boxes)
       if (box.width > most) return std::nullopt;
     if (pack_boxes(boxes, most) > most) return std::nullopt;
@@ -329,9 +341,10 @@ Result<UvLayout> lay_out_uvs(const SolvedJob& job, const LayoutRequest& request)
     return fail(ErrorCode::not_solved, no_room(job, request));
   }
   for (; fineness > 1; fineness -= 2)
-    if (auto layout = packing.pack(1, fineness, full_gutter, job.job.texture_size)) return std::move(*layout);
+    if (auto layout = packing.pack_exactly(fineness, full_gutter, job.job.texture_size))
+      return std::move(*layout);
   for (int gutter = full_gutter; gutter > 0; gutter /= 2) {
-    if (auto layout = packing.pack(1, 1, gutter, largest_side)) return std::move(*layout);
+    if (auto layout = packing.pack_exactly(1, gutter, largest_side)) return std::move(*layout);
     if (auto layout = packing.pack_scaled(1, gutter, largest_side)) return std::move(*layout);
   }
   return fail(ErrorCode::not_solved, no_room(job, request));

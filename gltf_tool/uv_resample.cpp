@@ -182,7 +182,7 @@ class Filler {
 
   void fill(const AtlasChart& chart) {
     const std::array<int, 4> box = box_of(chart);
-    if (chart.kept && r_.reference[0] > 0) {
+    if (chart.kept && r_.reference[0] > 0 && r_.turns.empty()) {
       copy(chart, box);
       return;
     }

@@ -14,7 +14,7 @@ namespace applique {
 enum class TexelContent {
   colour,  ///< sRGB: averaged in linear light.
   data,    ///< As they are.
-  normal,  ///< Directions in the tangent frame: turned with the frame.
+  normal,  ///< Directions in the tangent frame, in red and green: turned with the frame.
 };
 
 /// From the old tangent frame to the new one: x' = xx x + xy y, y' = yx x + yy y. Without length or shear.
@@ -32,7 +32,8 @@ struct Resampling {
   const UvLayout* layout = nullptr;
   std::array<int, 2> size = {0, 0};  ///< Texels of the new texture.
   /// Old texels of the texture that the layout started from, by texel of this one, where both are shown
-  /// through the same texture coordinates; charts that are kept are then copied as a whole. Zero: others.
+  /// through the same texture coordinates; charts that are kept are then copied as a whole, unless something
+  /// is to be turned. Zero: others.
   std::array<double, 2> reference = {0, 0};
   std::vector<std::array<Texel, 3>> old_corners;  ///< By triangle of the layout, in texels.
   std::vector<std::array<FrameTurn, 3>> turns;    ///< By triangle and corner; empty: none is turned.
