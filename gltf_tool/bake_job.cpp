@@ -60,8 +60,7 @@ void warn_of_overlap(SolvedDecal& decal, const TargetWork& work, const TransferR
   decal.warnings.push_back(
       {"uv_overlap",
        fmt::format("decal '{}': {} texels of '{}' are shown by other surface too, where the decal appears "
-                   "as well; give that surface texture coordinates of its own, or the decal \"output\": "
-                   "\"overlay\"",
+                   "as well; \"uv_conflict\": \"separate\" gives it texture space of its own there",
                    decal.job.name, result.shared_texels, work.report.material)});
 }
 

@@ -356,9 +356,9 @@ class Separation {
   /// Nothing of an atlas lies beyond its border, and textures of any size can be clamped.
   void clamp(std::size_t texture) {
     constexpr int to_edge = 33071;
+    if (!document_.json.contains("samplers")) document_.json["samplers"] = Json::array();
     auto& textures = document_.json["textures"];
     auto& samplers = document_.json["samplers"];
-    if (samplers.is_null()) samplers = Json::array();
     const auto old = index_of(textures[texture], "sampler");
     Json sampler = old ? samplers[*old] : Json::object();
     sampler["wrapS"] = to_edge;
@@ -390,31 +390,13 @@ class Separation {
     if (resampling.reference[0] > 0) {
       for (std::size_t c = 0; c < 2; ++c) density[c] = 1 / (resampling.reference[c] * layout.scale);
     } else {
-      density.fill(finest_density(resampling, layout));
+      constexpr double most = 8;
+      density.fill(std::clamp(usual_stretch(layout.corners, resampling.old_corners), 1 / most, most));
     }
     std::array<int, 2> size = {};
     for (std::size_t c = 0; c < 2; ++c)
       size[c] = static_cast<int>(std::clamp(std::round(layout.size[c] * density[c]), 1.0, largest));
     return size;
-  }
-
-  /// Of the triangles, by area: what nineteen in twenty need.
-  static double finest_density(const Resampling& resampling, const UvLayout& layout) {
-    constexpr double most = 8;
-    constexpr double share = 0.95;
-    std::vector<std::pair<double, double>> needs;  // density and area
-    double total = 0;
-    for (std::size_t t = 0; t < layout.corners.size(); ++t) {
-      const double area = std::abs(doubled_area(layout.corners[t]));
-      if (area == 0) continue;
-      needs.emplace_back(half_axes(map_between(layout.corners[t], resampling.old_corners[t]))[0], area);
-      total += area;
-    }
-    std::sort(needs.begin(), needs.end());
-    double sum = 0;
-    for (const auto& [density, area] : needs)
-      if ((sum += area) >= share * total) return std::clamp(density, 1 / most, most);
-    return 1;
   }
 
   /// The reference shows the new coordinates, untransformed.

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
+#include <vector>
 
 #include "uv_raster.h"
 
@@ -30,6 +32,23 @@ std::array<double, 2> half_axes(const TexelMap& map) {
   const double determinant = std::abs(map.xx * map.yy - map.xy * map.yx);
   const double longer = std::sqrt(half + std::sqrt(std::max(0.0, half * half - determinant * determinant)));
   return {longer, longer > 0 ? determinant / longer : 0};
+}
+
+double usual_stretch(std::span<const std::array<Texel, 3>> from, std::span<const std::array<Texel, 3>> to) {
+  constexpr double share = 0.95;
+  std::vector<std::pair<double, double>> stretches;  // with their areas
+  double total = 0;
+  for (std::size_t t = 0; t < from.size(); ++t) {
+    const double area = std::abs(doubled_area(from[t]));
+    if (area == 0) continue;
+    stretches.emplace_back(half_axes(map_between(from[t], to[t]))[0], area);
+    total += area;
+  }
+  std::sort(stretches.begin(), stretches.end());
+  double sum = 0;
+  for (const auto& [stretch, area] : stretches)
+    if ((sum += area) >= share * total) return stretch;
+  return 0;
 }
 
 }  // namespace applique

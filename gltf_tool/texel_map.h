@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <span>
 
 #include "applique/transfer/transfer.h"
 
@@ -21,5 +22,9 @@ TexelMap map_between(const std::array<Texel, 3>& from, const std::array<Texel, 3
 
 /// What a circle of radius 1 becomes: the half axes of its ellipse, the longer first.
 std::array<double, 2> half_axes(const TexelMap& map);
+
+/// The longer half axis of the maps between the triangles, as nineteen in twenty of the first ones' area have
+/// it at most; 0 if they have no area.
+double usual_stretch(std::span<const std::array<Texel, 3>> from, std::span<const std::array<Texel, 3>> to);
 
 }  // namespace applique

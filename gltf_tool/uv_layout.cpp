@@ -19,7 +19,7 @@ namespace {
 constexpr int largest_side = 8192;
 constexpr int best_grid = 64;
 constexpr int full_gutter = 16;      // texels, as a transfer's
-constexpr double slimmest = 32;      // length to width of what a circle on the surface is in the texture
+constexpr double slimmest = 32;      // length to width of what a circle on the surface is in a layout
 constexpr double coarsest = 32;      // pixels to a texel, along a line
 constexpr double fine_enough = 0.5;  // texels to a pixel: below, a bake warns
 
@@ -66,6 +66,18 @@ std::array<Texel, 3> plane_corners(const SolvedJob& job, const SeparatedTriangle
   return corners;
 }
 
+/// The image on the triangle, in pixels.
+std::array<Texel, 3> image_corners(const SolvedJob& job, const SeparatedTriangle& t) {
+  const SolvedDecal& decal = job.decals[t.decal];
+  const double pixels = decal.region.frame().pixels_per_unit();
+  std::array<Texel, 3> corners = {};
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Vec2 place = decal.map.image[patch_face(job, t).vertices[k]];
+    corners[k] = {pixels * place.real(), -pixels * place.imag()};
+  }
+  return corners;
+}
+
 /// Laid out alone: as it is on the surface, with about as many texels as the decal has pixels there. One
 /// without an area gets half a texel, so that it is a triangle.
 std::array<Texel, 3> own_corners(const SolvedJob& job, const SeparatedTriangle& t) {
@@ -93,12 +105,32 @@ class Charting {
       corners[i] = own_corners(job_, request_.triangles[i]);
       charts.push_back({{i}, false, {0, 0}, {0, 0, 0, 0}});
     }
+    if (request_.created_size == 0)
+      for (const AtlasChart& chart : charts)
+        if (!chart.kept) refine(chart);
   }
 
-  std::vector<std::array<Texel, 3>> corners;  ///< Old texels where the chart is kept, else pixels.
+  std::vector<std::array<Texel, 3>> corners;  ///< Old texels where the chart is kept, else new ones.
   std::vector<AtlasChart> charts;
 
  private:
+  /// A chart has a texel for each pixel of the decal; more where the old texture has.
+  void refine(const AtlasChart& chart) {
+    constexpr double most = 16;
+    std::vector<std::array<Texel, 3>> from;
+    std::vector<std::array<Texel, 3>> to;
+    for (const std::uint32_t i : chart.triangles) {
+      const SeparatedTriangle& t = request_.triangles[i];
+      if (job_.model.parts[t.part].uvs.empty()) return;
+      from.push_back(corners[i]);
+      to.push_back(texels_of(job_, t, request_.texture));
+    }
+    const double density = std::clamp(usual_stretch(from, to), 1.0, most);
+    for (const std::uint32_t i : chart.triangles)
+      for (Texel& corner : corners[i])
+        for (double& x : corner) x *= density;
+  }
+
   /// Returns the triangles that cannot keep theirs.
   std::vector<std::uint32_t> keep_old_layout() {
     std::map<std::array<double, 5>, std::uint32_t> places;
@@ -190,7 +222,6 @@ class Packing {
     layout.gutter = (gutter_texels + fineness - 1) / fineness;
     std::vector<AtlasBox> boxes;
     for (AtlasChart& chart : layout.charts) {
-      // What is not kept is measured in pixels of the decal, one to a texel of the base colour.
       const double factor = chart.kept ? scale : scale / fineness;
       std::array<double, 2> lower = {HUGE_VAL, HUGE_VAL};
       std::array<double, 2> upper = {-HUGE_VAL, -HUGE_VAL};
@@ -301,14 +332,7 @@ std::string no_room(const SolvedJob& job, const LayoutRequest& request) {
 }  // namespace
 
 double pixels_on(const SolvedJob& job, const SeparatedTriangle& t) {
-  const SolvedDecal& decal = job.decals[t.decal];
-  const double pixels = decal.region.frame().pixels_per_unit();
-  std::array<Texel, 3> corners = {};
-  for (std::size_t k = 0; k < 3; ++k) {
-    const Vec2 place = decal.map.image[patch_face(job, t).vertices[k]];
-    corners[k] = {pixels * place.real(), pixels * place.imag()};
-  }
-  return 0.5 * std::abs(doubled_area(corners));
+  return 0.5 * std::abs(doubled_area(image_corners(job, t)));
 }
 
 std::array<Texel, 3> texels_of(const SolvedJob& job, const SeparatedTriangle& t,
@@ -325,9 +349,9 @@ std::array<Texel, 3> texels_of(const SolvedJob& job, const SeparatedTriangle& t,
 bool has_texture_space(const SolvedJob& job, const SeparatedTriangle& t, const std::array<int, 2>& texture) {
   if (texture[0] == 0 || job.model.parts[t.part].uvs.empty()) return false;
   const auto texels = texels_of(job, t, texture);
-  const double area = 0.5 * std::abs(doubled_area(texels));
-  if (!(area > 0) || area * coarsest * coarsest < pixels_on(job, t)) return false;
-  return slimness(flatten(surface_corners(job, t)), texels) <= slimmest;
+  if (!(std::abs(doubled_area(texels)) > 0)) return false;
+  const auto pixels = image_corners(job, t);
+  return doubled_area(pixels) == 0 || half_axes(map_between(pixels, texels))[1] * coarsest >= 1;
 }
 
 Result<UvLayout> lay_out_uvs(const SolvedJob& job, const LayoutRequest& request) {
@@ -340,9 +364,10 @@ Result<UvLayout> lay_out_uvs(const SolvedJob& job, const LayoutRequest& request)
       if (auto layout = packing.pack_scaled(1e6, gutter, request.created_size)) return std::move(*layout);
     return fail(ErrorCode::not_solved, no_room(job, request));
   }
+  const int most =
+      std::min(std::max({job.job.texture_size, request.texture[0], request.texture[1]}), largest_side);
   for (; fineness > 1; fineness -= 2)
-    if (auto layout = packing.pack_exactly(fineness, full_gutter, job.job.texture_size))
-      return std::move(*layout);
+    if (auto layout = packing.pack_exactly(fineness, full_gutter, most)) return std::move(*layout);
   for (int gutter = full_gutter; gutter > 0; gutter /= 2) {
     if (auto layout = packing.pack_exactly(1, gutter, largest_side)) return std::move(*layout);
     if (auto layout = packing.pack_scaled(1, gutter, largest_side)) return std::move(*layout);

@@ -50,10 +50,10 @@ struct UvLayout {
 
 /// Charts and packs them. Triangles keep the layout that they have in the old texture, moved by whole texels,
 /// so that what is resampled is the same to the bit: one chart for each connected, unfolded, not overlapping
-/// piece. Those that have no texture coordinates, or such that the decal would be a smear (fewer than 1/32
-/// texel for a pixel along a line, or 32 times as long as wide), are laid out as the decal's embedding is in
-/// the plane, at one texel a pixel. Where the old texture has less than 1/2 texel for a pixel of the decals,
-/// the base colour becomes finer, as far as the job's texture size allows.
+/// piece. Those that have no texture coordinates, or such that the decal would be a smear (in some direction
+/// fewer than 1/32 texel for a pixel), are laid out as the decal's embedding is in the plane, at one texel a
+/// pixel or more. Where the old texture has less than 1/2 texel for a pixel of the decals, the base colour
+/// becomes finer, as far as the old texture's size or the job's texture size allow.
 ///
 /// Errors: not_solved when there are more charts than an atlas of 8192 x 8192 texels has room for.
 Result<UvLayout> lay_out_uvs(const SolvedJob& job, const LayoutRequest& request);
