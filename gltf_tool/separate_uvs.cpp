@@ -344,8 +344,7 @@ class Separation {
     if (slot.mapping == base)
       resampling.reference = {static_cast<double>(request.texture[0]) / image.width,
                               static_cast<double>(request.texture[1]) / image.height};
-    resampling.size = is_base ? std::array{layout.size[0] * layout.fineness, layout.size[1] * layout.fineness}
-                              : slot_size(resampling, layout);
+    resampling.size = is_base ? layout.size : slot_size(resampling, layout);
     APPLIQUE_TRY(const auto png, encode_png(resample_texture(resampling)));
     for (const SlotPointer& pointer : slot.slots) show_whole(material, pointer, set);
     set_slot_images(document_, material, slot.slots, png, slot.name);
@@ -386,12 +385,13 @@ class Separation {
   /// The size at which no detail of the slot's texture is lost.
   static std::array<int, 2> slot_size(const Resampling& resampling, const UvLayout& layout) {
     constexpr double largest = 8192;
-    std::array<double, 2> density = {1, 1};  // texels a unit
+    std::array<double, 2> density = {1, 1};  // texels by texel of the base colour
     if (resampling.reference[0] > 0) {
       for (std::size_t c = 0; c < 2; ++c) density[c] = 1 / (resampling.reference[c] * layout.scale);
     } else {
       constexpr double most = 8;
-      density.fill(std::clamp(usual_stretch(layout.corners, resampling.old_corners), 1 / most, most));
+      density.fill(std::clamp(usual_stretch(layout.corners, resampling.old_corners) / layout.fineness,
+                              1 / most, most));
     }
     std::array<int, 2> size = {};
     for (std::size_t c = 0; c < 2; ++c)
@@ -417,9 +417,10 @@ class Separation {
       MovedTriangles& moved = parts[t.part];
       moved.triangles.push_back(t.triangle);
       std::array<std::array<float, 2>, 3> uvs = {};
-      for (std::size_t k = 0; k < 3; ++k)
-        for (std::size_t c = 0; c < 2; ++c)
-          uvs[k][c] = static_cast<float>(layout.corners[i][k][c] / layout.size[c]);
+      for (std::size_t k = 0; k < 3; ++k) {
+        const auto uv = layout.uv(layout.corners[i][k]);
+        uvs[k] = {static_cast<float>(uv[0]), static_cast<float>(uv[1])};
+      }
       moved.uvs.push_back(uvs);
       if (const auto turned = tangents.find({t.part, t.triangle}); turned != tangents.end())
         moved.tangents.push_back(turned->second);

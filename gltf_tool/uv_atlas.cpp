@@ -77,7 +77,7 @@ int pack_boxes(std::vector<AtlasBox>& boxes, int width) {
   return height;
 }
 
-std::optional<std::array<int, 2>> pack_atlas(std::vector<AtlasBox>& boxes, int most) {
+std::optional<std::array<int, 2>> pack_atlas(std::vector<AtlasBox>& boxes, int fineness, int most) {
   std::int64_t area = 0;
   int widest = 1;
   for (const AtlasBox& box : boxes) {
@@ -85,20 +85,21 @@ std::optional<std::array<int, 2>> pack_atlas(std::vector<AtlasBox>& boxes, int m
     widest = std::max(widest, box.width);
     if (box.width > most || box.height > most) return std::nullopt;
   }
+  area *= fineness * fineness;
   if (area > std::int64_t{most} * most) return std::nullopt;
-  const auto size_of = [](const std::array<int, 2>& sides) { return std::int64_t{sides[0]} * sides[1]; };
-  const auto length_of = [](const std::array<int, 2>& sides) { return sides[0] + sides[1]; };
+  const auto size_of = [](const std::array<int, 2>& sides) {
+    return std::pair(std::int64_t{sides[0]} * sides[1], sides[0] + sides[1]);
+  };
   std::optional<std::array<int, 2>> best;
   std::vector<AtlasBox> placed = boxes;
   // Widths that are not far from a square's side.
   constexpr int longest = 4;
   for (int width = 1; width <= most && std::int64_t{width} * width <= longest * longest * area; width *= 2) {
-    if (width < widest || std::int64_t{width} * width * longest * longest < area) continue;
-    const std::array<int, 2> sides = {
-        width, static_cast<int>(std::bit_ceil(static_cast<unsigned>(pack_boxes(placed, width))))};
-    if (sides[1] > most) continue;
-    if (best && std::pair(size_of(sides), length_of(sides)) >= std::pair(size_of(*best), length_of(*best)))
-      continue;
+    if (width / fineness < widest || std::int64_t{width} * width * longest * longest < area) continue;
+    const std::int64_t height = std::int64_t{fineness} * pack_boxes(placed, width / fineness);
+    if (height > most) continue;
+    const std::array<int, 2> sides = {width, static_cast<int>(std::bit_ceil(static_cast<unsigned>(height)))};
+    if (sides[1] > most || (best && size_of(sides) >= size_of(*best))) continue;
     best = sides;
     boxes = placed;
   }

@@ -16,8 +16,9 @@ struct AtlasBox {
 /// each as far up as it goes over the skyline of those before it. Returns the height that they take.
 int pack_boxes(std::vector<AtlasBox>& boxes, int width);
 
-/// Packs into the smallest rectangle that this finds, of sides that are powers of two, which mip pyramids and
-/// samplers like best, and at most `most`. None if there is none.
-std::optional<std::array<int, 2>> pack_atlas(std::vector<AtlasBox>& boxes, int most);
+/// Packs boxes of units, each `fineness` texels long, into the smallest rectangle that this finds, of sides
+/// that are powers of two, which mip pyramids and samplers like best, and at most `most`. Returns the sides,
+/// in texels; none if there is none.
+std::optional<std::array<int, 2>> pack_atlas(std::vector<AtlasBox>& boxes, int fineness, int most);
 
 }  // namespace applique

@@ -291,7 +291,7 @@ class Packing {
  private:
   std::optional<std::array<int, 2>> pack_boxes_into(std::vector<AtlasBox>& boxes, int fineness,
                                                     int most) const {
-    if (request_.created_size == 0) return pack_atlas(boxes, most / fineness);
+    if (request_.created_size == 0) return pack_atlas(boxes, fineness, most);
     for (const AtlasBox& box : boxes)
       if (box.width > most) return std::nullopt;
     if (pack_boxes(boxes, most) > most) return std::nullopt;

@@ -41,11 +41,16 @@ struct AtlasChart {
 struct UvLayout {
   std::vector<std::array<Texel, 3>> corners;  ///< By triangle of the request.
   std::vector<AtlasChart> charts;
-  std::array<int, 2> size = {0, 0};
-  int fineness = 1;  ///< Texels of the new base colour along a unit. Odd: the old texels' centres stay
-                     ///< centres, so that bilinear filtering shows what it showed.
+  std::array<int, 2> size = {0, 0};  ///< Of the new base colour, in its texels.
+  int fineness = 1;                  ///< Of those texels along a unit. Odd: the old texels' centres stay
+                                     ///< centres, so that bilinear filtering shows what it showed.
   double scale = 1;
   int gutter = 0;  ///< Units around each chart.
+
+  /// Texture coordinates of a place.
+  [[nodiscard]] std::array<double, 2> uv(const Texel& unit) const {
+    return {unit[0] * fineness / size[0], unit[1] * fineness / size[1]};
+  }
 };
 
 /// Charts and packs them. Triangles keep the layout that they have in the old texture, moved by whole texels,

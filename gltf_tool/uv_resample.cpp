@@ -173,7 +173,7 @@ class Filler {
  public:
   Filler(const Resampling& r, Image& out) : r_(r), sampler_(r), out_(out) {
     for (std::size_t c = 0; c < 2; ++c)
-      texels_per_unit_[c] = static_cast<double>(r.size[c]) / r.layout->size[c];
+      texels_per_unit_[c] = static_cast<double>(r.size[c]) * r.layout->fineness / r.layout->size[c];
     corners_ = r.layout->corners;
     for (auto& corners : corners_)
       for (Texel& corner : corners)
