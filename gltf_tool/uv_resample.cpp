@@ -154,17 +154,30 @@ class OwnerGrid {
   std::vector<std::uint32_t> owners_;
 };
 
-/// Weights of a triangle's corners at the point of the triangle near `at`.
+/// Weights of a triangle's corners at the point of the triangle nearest to `at`.
 std::array<double, 3> weights_near(const std::array<Texel, 3>& corners, const Texel& at) {
+  std::array<double, 3> weights = {};
   const double area = doubled_area(corners);
-  std::array<double, 3> weights = {1, 0, 0};
-  if (area == 0) return weights;
-  double sum = 0;
-  for (std::size_t k = 0; k < 3; ++k) {
-    weights[k] = std::max(0.0, doubled_area({at, corners[(k + 1) % 3], corners[(k + 2) % 3]}) / area);
-    sum += weights[k];
+  if (area != 0) {
+    for (std::size_t k = 0; k < 3; ++k)
+      weights[k] = doubled_area({at, corners[(k + 1) % 3], corners[(k + 2) % 3]}) / area;
+    if (*std::min_element(weights.begin(), weights.end()) >= 0) return weights;
   }
-  for (double& weight : weights) weight /= sum;
+  double nearest = HUGE_VAL;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Texel& a = corners[k];
+    const Texel& b = corners[(k + 1) % 3];
+    const Texel side = {b[0] - a[0], b[1] - a[1]};
+    const double length = side[0] * side[0] + side[1] * side[1];
+    const double along = length == 0 ? 0 : ((at[0] - a[0]) * side[0] + (at[1] - a[1]) * side[1]) / length;
+    const double t = std::clamp(along, 0.0, 1.0);
+    const double distance = std::hypot(a[0] + t * side[0] - at[0], a[1] + t * side[1] - at[1]);
+    if (distance >= nearest) continue;
+    nearest = distance;
+    weights = {};
+    weights[k] = 1 - t;
+    weights[(k + 1) % 3] = t;
+  }
   return weights;
 }
 
