@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "bake_plan.h"
+#include "decal_layers.h"
 #include "edit.h"
 #include "overlay.h"
 #include "overlay_mesh.h"
@@ -22,7 +23,7 @@ struct TargetWork {
   BakeTarget target;
   Image texture;
   TextureReport report;
-  std::vector<Transfer> transfers;  ///< By BakeTarget::decals.
+  std::vector<Transfer> transfers;  ///< By BakeTarget::shares.
 };
 
 std::string material_name(const Document& document, std::size_t material) {
@@ -42,6 +43,7 @@ Result<std::vector<TargetWork>> prepare(const SolvedJob& job, const Document& do
     TargetWork work;
     APPLIQUE_TRY(work.texture, textures[i].get());
     work.report.material = material_name(document, targets[i].isolated);
+    work.report.slot = name_of(targets[i].slot);
     work.report.width = work.texture.width;
     work.report.height = work.texture.height;
     work.report.created = !has_texture(job.model, targets[i]);
@@ -65,7 +67,6 @@ void warn_of_overlap(SolvedDecal& decal, const TargetWork& work, const TransferR
 }
 
 void warn_of_tint(SolvedDecal& decal, const SolvedJob& job, const TargetWork& work) {
-  if (work.report.created) return;
   const auto& factor = job.model.materials[*work.target.material].base_colour_factor;
   if (factor[0] == 1 && factor[1] == 1 && factor[2] == 1) return;
   decal.warnings.push_back(
@@ -74,6 +75,41 @@ void warn_of_tint(SolvedDecal& decal, const SolvedJob& job, const TargetWork& wo
            "decal '{}': the material '{}' multiplies its texture, and so the decal, by the colour ({:.3g}, "
            "{:.3g}, {:.3g})",
            decal.job.name, work.report.material, factor[0], factor[1], factor[2])});
+}
+
+/// Factors of a texture that was there before: they stay, and so change what the decal brings.
+void warn_of_factors(SolvedDecal& decal, const SolvedJob& job, const TargetWork& work) {
+  if (work.report.created) return;
+  if (work.target.slot == MaterialSlot::base_color) return warn_of_tint(decal, job, work);
+  const auto& material = job.model.document.json.at("materials").at(*work.target.material);
+  const auto warn = [&](const char* what, std::initializer_list<const char*> path) {
+    const auto* factor = find(material, path);
+    if (factor == nullptr || *factor == 1 || *factor == std::vector<double>{1, 1, 1}) return;
+    decal.warnings.push_back(
+        {"factor_scales",
+         fmt::format("decal '{}': the material '{}' multiplies its {}, and so the decal's, by {}",
+                     decal.job.name, work.report.material, what, factor->dump())});
+  };
+  switch (work.target.slot) {
+    case MaterialSlot::metallic_roughness:
+      warn("roughness", {"pbrMetallicRoughness", "roughnessFactor"});
+      warn("metallic", {"pbrMetallicRoughness", "metallicFactor"});
+      break;
+    case MaterialSlot::normal:
+      warn("relief", {"normalTexture", "scale"});
+      break;
+    case MaterialSlot::occlusion:
+      warn("occlusion", {"occlusionTexture", "strength"});
+      break;
+    default:
+      // Without a factor, nothing of the texture is seen.
+      if (find(material, {"emissiveFactor"}) == nullptr)
+        decal.warnings.push_back(
+            {"factor_scales", fmt::format("decal '{}': the material '{}' multiplies its emissive texture, "
+                                          "and so the decal's, by 0, its emissiveFactor",
+                                          decal.job.name, work.report.material)});
+      warn("emissive texture", {"emissiveFactor"});
+  }
 }
 
 void warn_of_density(SolvedDecal& decal, const std::optional<TexelDensity>& density) {
@@ -104,32 +140,33 @@ void warn_of_motion(SolvedDecal& decal, const SolvedJob& job) {
 /// Transfers every decal into its textures, in the order of the job.
 Result<void> transfer_all(SolvedJob& job, std::vector<TargetWork>& works, GpuBaker& baker, BakedJob& baked,
                           const StageCallback& on_stage) {
-  std::vector<DecalImage> images(job.decals.size());
-  std::vector<std::vector<const Transfer*>> transfers(job.decals.size());
+  std::vector<DecalLayers> layers(job.decals.begin(), job.decals.end());
+  std::vector<std::vector<const Transfer*>> transfers(job.decals.size());  // One layer's, for the density.
   for (TargetWork& work : works) {
-    for (const std::size_t d : work.target.decals)
+    for (const BakeShare& share : work.target.shares)
       work.transfers.push_back(
-          lay_out_transfer(job, work.target, d, work.texture.width, work.texture.height));
+          lay_out_transfer(job, work.target, share, work.texture.width, work.texture.height));
     for (std::size_t i = 0; i < work.transfers.size(); ++i)
-      transfers[work.target.decals[i]].push_back(&work.transfers[i]);
+      if (work.target.shares[i].layer == 0)
+        transfers[work.target.shares[i].decal].push_back(&work.transfers[i]);
   }
   for (std::size_t w = 0; w < works.size(); ++w) {
     TargetWork& work = works[w];
     on_stage("baking into " + work.report.material,
              transferred * static_cast<double>(w) / static_cast<double>(works.size()));
     for (std::size_t i = 0; i < work.transfers.size(); ++i) {
-      const std::size_t d = work.target.decals[i];
+      const auto [d, layer] = work.target.shares[i];
       SolvedDecal& decal = job.decals[d];
       const Stopwatch watch;
-      if (images[d].levels.empty()) images[d] = make_decal_image(decal.image, decal.region);
-      work.transfers[i].image = &images[d];
+      APPLIQUE_TRY(work.transfers[i].image, layers[d].image(layer));
       APPLIQUE_TRY(const TransferResult result, baker.transfer->run(work.transfers[i], work.texture));
       decal.times.add("transfer", watch.seconds());
       work.report.covered_texels += result.covered_texels;
       work.report.gutter_texels += result.gutter_texels;
       work.report.shared_texels += result.shared_texels;
-      warn_of_overlap(decal, work, result);
-      warn_of_tint(decal, job, work);
+      if (layer == 0) warn_of_overlap(decal, work, result);
+      const bool again = i > 0 && work.target.shares[i - 1].decal == d;  // another layer of the texture
+      if (!again) warn_of_factors(decal, job, work);
     }
   }
   for (std::size_t d = 0; d < job.decals.size(); ++d) {
@@ -146,7 +183,7 @@ Result<void> store_textures(const std::vector<TargetWork>& works, Document& docu
     encoded.push_back(std::async(std::launch::async, [&work] { return encode_png(work.texture); }));
   for (std::size_t i = 0; i < works.size(); ++i) {
     APPLIQUE_TRY(const auto png, encoded[i].get());
-    set_base_colour_image(document, works[i].target.isolated, png);
+    set_slot_image(document, works[i].target.isolated, works[i].target.slot, png);
   }
   return {};
 }

@@ -8,7 +8,9 @@
 
 #include <fmt/format.h>
 
+#include "decal_layers.h"
 #include "edit.h"
+#include "tangents.h"
 
 namespace applique {
 namespace {
@@ -33,20 +35,6 @@ std::map<std::uint32_t, std::set<std::size_t>> find_touched_parts(const SolvedJo
   return touched;
 }
 
-Result<void> check_uvs(const SolvedJob& job, std::uint32_t part_index, std::size_t decal) {
-  const ModelPart& part = job.model.parts[part_index];
-  if (!part.uvs.empty()) return {};
-  const auto& mesh = job.model.document.json.at("meshes").at(part.mesh);
-  const std::string name = mesh.value("name", std::string());
-  return fail(
-      ErrorCode::uvs_missing,
-      fmt::format(
-          "decal '{}': mesh {}{}, primitive {}, has no texture coordinates to bake into; give the decal "
-          "\"uv_conflict\": \"separate\", or \"output\": \"overlay\"",
-          job.decals[decal].job.name, part.mesh, name.empty() ? "" : fmt::format(" '{}'", name),
-          part.primitive));
-}
-
 double area_of(const Texel& a, const Texel& b, const Texel& c) {
   return 0.5 * std::abs((b[0] - a[0]) * (c[1] - a[1]) - (c[0] - a[0]) * (b[1] - a[1]));
 }
@@ -56,73 +44,192 @@ std::uint16_t stored(double value) {
   return static_cast<std::uint16_t>(257 * std::lround(255 * std::clamp(value, 0.0, 1.0)));
 }
 
+/// The slot of the target's material as the model has it; of no material at all where the parts had none.
+MaterialTexture texture_of(const Model& model, const BakeTarget& target) {
+  if (!target.material) return {};
+  return read_texture(model.document, model.document.json.at("materials").at(*target.material), target.slot);
+}
+
+/// A part's texture coordinates for a slot, as ModelPart::uvs are those of the base colour.
+std::vector<std::array<double, 2>> uvs_for(const Model& model, const ModelPart& part, MaterialSlot slot) {
+  if (!part.material || slot == MaterialSlot::base_color) return part.uvs;
+  const auto& material = model.document.json.at("materials").at(*part.material);
+  const UvMapping mapping = read_uv_mapping(material, slot);
+  if (mapping == read_uv_mapping(material)) return part.uvs;
+  const auto set = part.other_uvs.find(mapping.set);
+  if (set == part.other_uvs.end()) return {};
+  std::vector<std::array<double, 2>> uvs = set->second;
+  for (auto& uv : uvs) uv = mapping.apply(uv);
+  return uvs;
+}
+
+Result<void> check_uvs(const SolvedJob& job, const BakeTarget& target) {
+  for (const std::uint32_t index : target.parts) {
+    const ModelPart& part = job.model.parts[index];
+    if (!uvs_for(job.model, part, target.slot).empty()) continue;
+    const auto& mesh = job.model.document.json.at("meshes").at(part.mesh);
+    const std::string name = mesh.value("name", std::string());
+    return fail(
+        ErrorCode::uvs_missing,
+        fmt::format(
+            "decal '{}': mesh {}{}, primitive {}, has no texture coordinates to bake into; give the decal "
+            "\"uv_conflict\": \"separate\", or \"output\": \"overlay\"",
+            job.decals[target.shares.front().decal].job.name, part.mesh,
+            name.empty() ? "" : fmt::format(" '{}'", name), part.primitive));
+  }
+  return {};
+}
+
+/// Tells a face of a normal map how the image lies in the tangent frames of its corners.
+void turn_into_tangent_space(const ModelPart& part, const std::array<std::uint32_t, 3>& triangle,
+                             const std::array<Tangent, 3>& frames, const ImageFrame& frame,
+                             TransferFace& face) {
+  const Vec3& origin = part.positions[triangle[0]];
+  const Vec3 p1 = part.positions[triangle[1]] - origin, p2 = part.positions[triangle[2]] - origin;
+  const std::array<Pixel, 3> q = {frame.to_pixel(face.image[0]), frame.to_pixel(face.image[1]),
+                                  frame.to_pixel(face.image[2])};
+  // In the image y goes down, in a normal map up.
+  const double x1 = q[1].x - q[0].x, y1 = q[0].y - q[1].y, x2 = q[2].x - q[0].x, y2 = q[0].y - q[2].y;
+  const double side = x1 * y2 - x2 * y1 < 0 ? -1 : 1;
+  const Vec3 right = side * (y2 * p1 - y1 * p2), up = side * (x1 * p2 - x2 * p1);
+  double turn = 0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Vec3& normal = part.normals[triangle[k]];
+    const Vec3 tangent = (frames[k].direction - normal.dot(frames[k].direction) * normal).normalized();
+    const Vec3 bitangent = frames[k].sign * normal.cross(tangent);
+    const Vec2 along(right.dot(tangent), right.dot(bitangent)), across(up.dot(tangent), up.dot(bitangent));
+    face.along[k] = std::abs(along) > 0 ? along / std::abs(along) : Vec2(1);
+    turn += cross(along, across);
+  }
+  face.reversed = turn < 0;
+}
+
+/// What the factors of a material make of a slot without a texture, as the texture would store it.
+std::array<std::uint16_t, 4> factor_value(const Model& model, const BakeTarget& target) {
+  const auto none = nlohmann::ordered_json::object();
+  const auto& material = target.material ? model.document.json.at("materials").at(*target.material) : none;
+  const auto number = [&](const char* key) {
+    const auto* value = find(material, {"pbrMetallicRoughness", key});
+    return value != nullptr ? value->get<double>() : 1.0;
+  };
+  switch (target.slot) {
+    case MaterialSlot::base_color: {
+      const auto factor = target.material ? model.materials[*target.material].base_colour_factor
+                                          : std::array<double, 4>{1, 1, 1, 1};
+      return {stored(linear_to_srgb(factor[0])), stored(linear_to_srgb(factor[1])),
+              stored(linear_to_srgb(factor[2])), stored(factor[3])};
+    }
+    case MaterialSlot::metallic_roughness:
+      return {stored(1), stored(number("roughnessFactor")), stored(number("metallicFactor")), stored(1)};
+    case MaterialSlot::normal:
+      return {128 * 257, 128 * 257, stored(1), stored(1)};
+    case MaterialSlot::occlusion:
+      return {stored(1), stored(1), stored(1), stored(1)};
+    case MaterialSlot::emissive: {
+      std::array<double, 3> factor = {0, 0, 0};
+      if (const auto* value = find(material, {"emissiveFactor"}))
+        factor = value->get<std::array<double, 3>>();
+      return {stored(linear_to_srgb(factor[0])), stored(linear_to_srgb(factor[1])),
+              stored(linear_to_srgb(factor[2])), stored(1)};
+    }
+  }
+  return {};
+}
+
+/// Texels of a texture that is made for a slot.
+std::array<int, 2> size_of_new(const SolvedJob& job, const BakeTarget& target) {
+  if (target.slot != MaterialSlot::base_color) {
+    if (job.job.resolution) return {*job.job.resolution, *job.job.resolution};
+    const auto base = target.material ? job.model.materials[*target.material].image : std::nullopt;
+    if (base)
+      if (const auto image = load_model_image(job.model, *base)) return {image->width, image->height};
+  }
+  return {job.job.texture_size, job.job.texture_size};
+}
+
 }  // namespace
 
 Result<std::vector<BakeTarget>> plan_bake(const SolvedJob& job, Document& document) {
   const auto touched = find_touched_parts(job);
   std::vector<PartKey> keys;
   for (const auto& [index, decals] : touched) {
-    APPLIQUE_CHECK(check_uvs(job, index, *decals.begin()));
     const ModelPart& part = job.model.parts[index];
     keys.push_back({part.node, part.mesh, part.primitive});
   }
   const std::vector<std::size_t> isolated = isolate_materials(document, keys);
 
-  std::map<std::size_t, BakeTarget> targets;
+  struct Ground {
+    BakeTarget target;
+    std::set<std::size_t> decals;
+  };
+  std::map<std::size_t, Ground> grounds;  // By material.
   std::size_t i = 0;
   for (const auto& [index, decals] : touched) {
-    BakeTarget& target = targets[isolated[i]];
-    target.isolated = isolated[i++];
-    target.material = job.model.parts[index].material;
-    target.parts.push_back(index);
-    target.decals.insert(target.decals.end(), decals.begin(), decals.end());
+    Ground& ground = grounds[isolated[i]];
+    ground.target.isolated = isolated[i++];
+    ground.target.material = job.model.parts[index].material;
+    ground.target.parts.push_back(index);
+    ground.decals.insert(decals.begin(), decals.end());
   }
   std::vector<BakeTarget> list;
-  for (auto& [material, target] : targets) {
-    std::sort(target.decals.begin(), target.decals.end());
-    target.decals.erase(std::unique(target.decals.begin(), target.decals.end()), target.decals.end());
-    list.push_back(std::move(target));
-  }
+  for (auto& [material, ground] : grounds)
+    for (const MaterialSlot slot : all_slots) {
+      BakeTarget target = ground.target;
+      target.slot = slot;
+      for (const std::size_t d : ground.decals)
+        for (std::size_t layer = 0; layer < job.decals[d].job.layers.size(); ++layer)
+          if (job.decals[d].job.layers[layer].slot == slot) target.shares.push_back({d, layer});
+      if (target.shares.empty()) continue;
+      APPLIQUE_CHECK(check_uvs(job, target));
+      list.push_back(std::move(target));
+    }
   return list;
 }
 
 bool has_texture(const Model& model, const BakeTarget& target) {
-  return target.material && model.materials[*target.material].image.has_value();
+  return texture_of(model, target).image.has_value();
 }
 
 Result<Image> initial_texture(const SolvedJob& job, const BakeTarget& target) {
-  if (has_texture(job.model, target))
-    return load_model_image(job.model, *job.model.materials[*target.material].image);
-  const auto factor = target.material ? job.model.materials[*target.material].base_colour_factor
-                                      : std::array<double, 4>{1, 1, 1, 1};
-  const int size = job.job.texture_size;
-  Image image = make_image(size, size,
-                           {stored(linear_to_srgb(factor[0])), stored(linear_to_srgb(factor[1])),
-                            stored(linear_to_srgb(factor[2])), stored(factor[3])});
-  if (factor[3] == 1) image.channels = 3;
+  if (const MaterialTexture texture = texture_of(job.model, target); texture.image)
+    return load_model_image(job.model, *texture.image);
+  const auto [width, height] = size_of_new(job, target);
+  const auto value = factor_value(job.model, target);
+  Image image = make_image(width, height, value);
+  if (value[3] == 65535) image.channels = 3;
   return image;
 }
 
-Transfer lay_out_transfer(const SolvedJob& job, const BakeTarget& target, std::size_t decal_index, int width,
+Transfer lay_out_transfer(const SolvedJob& job, const BakeTarget& target, const BakeShare& share, int width,
                           int height) {
-  const SolvedDecal& decal = job.decals[decal_index];
+  const SolvedDecal& decal = job.decals[share.decal];
+  const DecalLayer& layer = decal.job.layers[share.layer];
   const DecalMap& map = decal.map;
   Transfer transfer;
   transfer.warp = &map.warp;
-  transfer.opacity = decal.job.opacity;
-  transfer.blend = decal.job.blend;
-  if (target.material) {
-    const ModelMaterial& material = job.model.materials[*target.material];
-    transfer.wrap_u = material.wrap_u;
-    transfer.wrap_v = material.wrap_v;
-    transfer.opaque = material.alpha_mode == "OPAQUE";
-  }
+  transfer.opacity = decal.job.opacity * layer.opacity;
+  transfer.blend = layer.blend;
+  transfer.encoding = encoding_of(layer.slot);
+  transfer.channels = layer.channels;
+  transfer.gutter = job.job.gutter;
+  const MaterialTexture texture = texture_of(job.model, target);
+  transfer.wrap_u = texture.wrap_u;
+  transfer.wrap_v = texture.wrap_v;
+  if (target.material && target.slot == MaterialSlot::base_color)
+    transfer.opaque = job.model.materials[*target.material].alpha_mode == "OPAQUE";
 
+  std::map<std::uint32_t, std::vector<std::array<double, 2>>> uvs;  // by part
+  std::map<std::uint32_t, std::vector<std::array<Tangent, 3>>> frames;
+  for (const std::uint32_t index : target.parts) {
+    uvs[index] = uvs_for(job.model, job.model.parts[index], target.slot);
+    if (transfer.encoding == Encoding::normal)
+      frames[index] = tangent_frames(job.model.parts[index], uvs[index]);
+  }
   const auto texel_corners = [&](std::uint32_t part_index, std::uint32_t triangle) {
     const ModelPart& part = job.model.parts[part_index];
     std::array<Texel, 3> texel = {};
     for (std::size_t k = 0; k < 3; ++k) {
-      const auto& uv = part.uvs[part.triangles[triangle][k]];
+      const auto& uv = uvs[part_index][part.triangles[triangle][k]];
       texel[k] = {uv[0] * width, uv[1] * height};
     }
     return texel;
@@ -143,6 +250,11 @@ Transfer lay_out_transfer(const SolvedJob& job, const BakeTarget& target, std::s
       if (map.groups == 1) continue;
       const auto influence = map.influence.begin() + std::ptrdiff_t{vertex.value} * map.groups;
       transfer.influence.insert(transfer.influence.end(), influence, influence + map.groups);
+    }
+    if (transfer.encoding == Encoding::normal) {
+      const ModelPart& owner = job.model.parts[source.part];
+      turn_into_tangent_space(owner, owner.triangles[source.triangle], frames[source.part][source.triangle],
+                              decal.region.frame(), face);
     }
     face.linear = map.linear[f] != 0;
     face.sheet = map.sheet[f];

@@ -130,7 +130,8 @@ void remove_image(Document& document, std::size_t image) {
 }
 
 /// Replaces an image's bytes and keeps its other members.
-void replace_image(Document& document, std::size_t image, std::span<const std::uint8_t> png) {
+void replace_image(Document& document, std::size_t image, std::span<const std::uint8_t> png,
+                   const std::string& fallback) {
   auto& entry = document.json["images"][image];
   const auto view = index_of(entry, "bufferView");
   if (view && count_view_uses(document, *view) == 1) {
@@ -139,8 +140,8 @@ void replace_image(Document& document, std::size_t image, std::span<const std::u
     return;
   }
   const auto* name = find(entry, {"name"});
-  const std::size_t added = add_image(
-      document, png, name != nullptr && name->is_string() ? name->get<std::string>() : "base_colour");
+  const std::size_t added =
+      add_image(document, png, name != nullptr && name->is_string() ? name->get<std::string>() : fallback);
   auto& images = document.json["images"];
   Json replacement = std::move(images[added]);
   images.erase(added);
@@ -149,6 +150,29 @@ void replace_image(Document& document, std::size_t image, std::span<const std::u
     if (images[image].contains(key)) replacement[key] = images[image][key];
   }
   images[image] = std::move(replacement);
+}
+
+/// A textureInfo and a texture, both without what they show, over the coordinates and with the sampler of the
+/// base colour's.
+std::pair<Json, Json> like_base_colour(const Document& document, const Json& material) {
+  Json info = Json::object(), texture = Json::object();
+  const auto* base = find_texture_info(material, MaterialSlot::base_color);
+  if (base == nullptr) return {info, texture};
+  if (base->contains("texCoord")) info["texCoord"] = base->at("texCoord");
+  if (const auto* transform = find(*base, {"extensions", "KHR_texture_transform"}))
+    info["extensions"]["KHR_texture_transform"] = *transform;
+  const auto& shown = document.json["textures"][base->at("index").get<std::size_t>()];
+  if (shown.contains("sampler")) texture["sampler"] = shown["sampler"];
+  return {info, texture};
+}
+
+/// What multiplies the slot's texture becomes 1.
+void drop_factors(Json& material, MaterialSlot slot) {
+  if (slot == MaterialSlot::base_color) material["pbrMetallicRoughness"].erase("baseColorFactor");
+  if (slot == MaterialSlot::metallic_roughness)
+    for (const char* factor : {"metallicFactor", "roughnessFactor"})
+      material["pbrMetallicRoughness"].erase(factor);
+  if (slot == MaterialSlot::emissive) material["emissiveFactor"] = {1, 1, 1};
 }
 
 /// The texture's only source becomes `png`: in place of an image that it alone uses, else as a new image.
@@ -171,7 +195,7 @@ void set_texture_image(Document& document, std::size_t texture, std::span<const 
     document.json["textures"][texture]["source"] = image;
     return;
   }
-  replace_image(document, own.front(), png);
+  replace_image(document, own.front(), png, name);
   document.json["textures"][texture]["source"] = own.front();
   for (std::size_t i = own.size(); i-- > 1;) remove_image(document, own[i]);
 }
@@ -233,24 +257,30 @@ std::size_t add_image(Document& document, std::span<const std::uint8_t> png, con
   return images.size() - 1;
 }
 
-void set_base_colour_image(Document& document, std::size_t material, std::span<const std::uint8_t> png) {
+void set_slot_image(Document& document, std::size_t material, MaterialSlot slot,
+                    std::span<const std::uint8_t> png) {
   auto& textures = document.json["textures"];
-  auto& pbr = document.json["materials"][material]["pbrMetallicRoughness"];
-  if (!pbr.contains("baseColorTexture")) {
-    pbr["baseColorTexture"] = {{"index", textures.size()}};
-    textures.push_back(Json::object());
+  auto& entry = document.json["materials"][material];
+  const bool in_pbr = slot == MaterialSlot::base_color || slot == MaterialSlot::metallic_roughness;
+  auto& owner = in_pbr ? entry["pbrMetallicRoughness"] : entry;
+  const std::string key = name_of(slot) + std::string("Texture");
+  if (!owner.contains(key)) {
+    auto [info, texture] = like_base_colour(document, entry);
+    info["index"] = textures.size();
+    owner[key] = std::move(info);
+    textures.push_back(std::move(texture));
   }
-  std::size_t texture = pbr["baseColorTexture"]["index"].get<std::size_t>();
+  std::size_t texture = owner[key]["index"].get<std::size_t>();
   bool has_image = false;
   each_source(textures[texture], [&](const Json&) { has_image = true; });
-  if (!has_image) pbr.erase("baseColorFactor");
+  if (!has_image) drop_factors(entry, slot);
   if (count_texture_uses(document, texture) > 1) {
     Json copy = textures[texture];
     texture = textures.size();
     textures.push_back(std::move(copy));
-    pbr["baseColorTexture"]["index"] = texture;
+    owner[key]["index"] = texture;
   }
-  set_texture_image(document, texture, png, "base_colour");
+  set_texture_image(document, texture, png, name_of(slot));
 }
 
 void set_slot_images(Document& document, std::size_t material, const std::vector<SlotPointer>& slots,

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "document.h"
+#include "material.h"
 
 namespace applique {
 
@@ -27,12 +28,13 @@ std::vector<std::size_t> instance_ranks(std::span<const PartKey> parts);
 /// coincide. The document must have passed check_document; the parts are distinct and exist.
 std::vector<std::size_t> isolate_materials(Document& document, std::span<const PartKey> parts);
 
-/// Shows an image (PNG bytes) as the base colour of an isolated material. The texture is copied first when
-/// other materials or slots use it; its sampler, and the material's texture coordinates, stay. A material
-/// without a base-colour texture gets one over TEXCOORD_0. Where there was no image before, baseColorFactor
-/// becomes 1, so the image must have it in its colours. The replaced image's bytes go where nothing else uses
-/// them.
-void set_base_colour_image(Document& document, std::size_t material, std::span<const std::uint8_t> png);
+/// Shows an image (PNG bytes) in a slot of an isolated material. The texture is copied first when other
+/// materials or slots use it; its sampler, and the material's texture coordinates, stay. A material without a
+/// texture there gets one over the base colour's coordinates (TEXCOORD_0 without a base colour). Where there
+/// was no image before, the slot's factors become 1, so the image must have them in its values. The replaced
+/// image's bytes go where nothing else uses them.
+void set_slot_image(Document& document, std::size_t material, MaterialSlot slot,
+                    std::span<const std::uint8_t> png);
 
 /// A texture reference in a material: /normalTexture, /extensions/KHR_materials_clearcoat/clearcoatTexture.
 using SlotPointer = Document::Json::json_pointer;

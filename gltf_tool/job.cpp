@@ -1,6 +1,7 @@
 #include "job.h"
 
 #include <algorithm>
+#include <array>
 #include <map>
 
 #include <fmt/format.h>
@@ -65,9 +66,64 @@ Place place_of(const json& feature) {
 }
 
 BlendMode blend_of(const std::string& name) {
-  static const std::map<std::string, BlendMode> modes = {
-      {"normal", BlendMode::normal}, {"multiply", BlendMode::multiply}, {"screen", BlendMode::screen}};
-  return modes.at(name);
+  constexpr std::array names = {"normal",     "multiply",    "screen",     "overlay",    "darken",
+                                "lighten",    "color-dodge", "color-burn", "hard-light", "soft-light",
+                                "difference", "exclusion",   "hue",        "saturation", "color",
+                                "luminosity", "add",         "erase"};
+  return static_cast<BlendMode>(std::find(names.begin(), names.end(), name) - names.begin());
+}
+
+/// What the keys of "layers" write.
+struct LayerKind {
+  const char* key;
+  MaterialSlot slot;
+  std::array<bool, 4> channels;
+  bool scalar;
+};
+constexpr std::array layer_kinds = {
+    LayerKind{"baseColor", MaterialSlot::base_color, {true, true, true, true}, false},
+    LayerKind{"normal", MaterialSlot::normal, {true, true, true, false}, false},
+    LayerKind{"metallicRoughness", MaterialSlot::metallic_roughness, {false, true, true, false}, false},
+    LayerKind{"roughness", MaterialSlot::metallic_roughness, {false, true, false, false}, true},
+    LayerKind{"metallic", MaterialSlot::metallic_roughness, {false, false, true, false}, true},
+    LayerKind{"occlusion", MaterialSlot::occlusion, {true, false, false, false}, true},
+    LayerKind{"emissive", MaterialSlot::emissive, {true, true, true, false}, false}};
+
+void read_layer_source(const json& source, const std::filesystem::path& folder, DecalLayer& layer) {
+  if (source.is_string()) layer.image = folder / source.get<std::string>();
+  if (source.is_number()) layer.value.emplace().fill(source.get<double>());
+  if (source.is_array()) layer.value = source.get<std::array<double, 3>>();
+}
+
+DecalLayer layer_of(const json& value, const LayerKind& kind, const std::filesystem::path& folder) {
+  DecalLayer layer;
+  layer.slot = kind.slot;
+  layer.channels = kind.channels;
+  layer.scalar = kind.scalar;
+  if (!value.is_object()) {
+    read_layer_source(value, folder, layer);
+    return layer;
+  }
+  for (const char* source : {"image", "value"})
+    if (value.contains(source)) read_layer_source(value[source], folder, layer);
+  layer.opacity = value.value("opacity", layer.opacity);
+  layer.blend = blend_of(value.value("blend", "normal"));
+  return layer;
+}
+
+/// The base colour comes from the decal's own image and blend, unless "layers" says otherwise.
+std::vector<DecalLayer> layers_of(const json& decal, const std::filesystem::path& folder) {
+  const json layers = decal.value("layers", json::object());
+  std::vector<DecalLayer> list;
+  if (!layers.contains("baseColor")) list.emplace_back();
+  for (const LayerKind& kind : layer_kinds)
+    if (layers.contains(kind.key) && layers[kind.key] != false)
+      list.push_back(layer_of(layers[kind.key], kind, folder));
+  const json own = layers.value("baseColor", json());
+  if (decal.contains("blend") && !(own.is_object() && own.contains("blend")))
+    for (DecalLayer& layer : list)
+      if (layer.slot == MaterialSlot::base_color) layer.blend = blend_of(decal["blend"]);
+  return list;
 }
 
 Energy energy_of(const json& value) {
@@ -106,7 +162,8 @@ DecalJob decal_of(const json& decal, const std::filesystem::path& folder) {
   if (decal.contains("size")) out.size = decal["size"].get<double>();
   if (decal.contains("up")) out.up = vector_of(decal["up"]);
   out.opacity = decal.value("opacity", out.opacity);
-  out.blend = blend_of(decal.value("blend", "normal"));
+  if (decal.contains("mask")) out.mask = folder / decal["mask"].get<std::string>();
+  out.layers = layers_of(decal, folder);
   out.output = decal.value("output", "bake") == "overlay" ? DecalOutput::overlay : DecalOutput::bake;
   out.uv_conflict = uv_conflict_of(decal.value("uv_conflict", "separate"));
   if (decal.contains("offset")) out.offset = decal["offset"].get<double>();
@@ -134,6 +191,21 @@ Result<void> check_names(const std::vector<DecalJob>& decals, const std::string&
   return {};
 }
 
+/// A texture's channel is one layer's.
+Result<void> check_layers(const json& decals, const std::string& file) {
+  for (std::size_t i = 0; i < decals.size(); ++i) {
+    const json layers = decals[i].value("layers", json::object());
+    for (const char* part : {"metallic", "roughness"})
+      if (layers.contains("metallicRoughness") && layers.contains(part))
+        return fail(
+            ErrorCode::schema_violation,
+            fmt::format("{0}: /decals/{1}/layers: found \"{2}\" beside \"metallicRoughness\" on decal '{3}', "
+                        "which has it already, expected one of them",
+                        file, i, part, decals[i]["name"].get<std::string>()));
+  }
+  return {};
+}
+
 /// Options of a method go with that method.
 Result<void> check_method_options(const json& decals, const std::string& file) {
   for (std::size_t i = 0; i < decals.size(); ++i) {
@@ -151,18 +223,29 @@ Result<void> check_method_options(const json& decals, const std::string& file) {
 
 }  // namespace
 
+std::vector<std::filesystem::path> images_of(const DecalJob& decal) {
+  std::vector<std::filesystem::path> images = {decal.image};
+  if (!decal.mask.empty()) images.push_back(decal.mask);
+  for (const DecalLayer& layer : decal.layers)
+    if (!layer.image.empty()) images.push_back(layer.image);
+  return images;
+}
+
 Result<Job> load_job(const std::filesystem::path& path) {
   APPLIQUE_TRY(const auto bytes, read_file(path));
   const std::string file = path.filename().string();
   APPLIQUE_TRY(const json document, parse_json({bytes.begin(), bytes.end()}, file));
   APPLIQUE_CHECK(check_schema(document, job_schema(), file));
   APPLIQUE_CHECK(check_method_options(document["decals"], file));
+  APPLIQUE_CHECK(check_layers(document["decals"], file));
 
   Job job;
   job.path = path;
   const std::filesystem::path folder = path.parent_path();
   job.model = folder / document["model"].get<std::string>();
   job.texture_size = document.value("texture_size", job.texture_size);
+  job.gutter = document.value("gutter", job.gutter);
+  if (document.contains("resolution")) job.resolution = document["resolution"].get<int>();
   for (const json& decal : document["decals"]) job.decals.push_back(decal_of(decal, folder));
   APPLIQUE_CHECK(check_names(job.decals, file));
   return job;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -11,6 +12,7 @@
 #include "applique/decal.h"
 #include "applique/transfer/transfer.h"
 
+#include "material.h"
 #include "place.h"
 
 namespace applique {
@@ -44,6 +46,17 @@ struct JobFeature {
 };
 
 /// One entry of "decals".
+/// What a decal does to one texture of the materials under it.
+struct DecalLayer {
+  MaterialSlot slot = MaterialSlot::base_color;
+  std::array<bool, 4> channels = {true, true, true, true};  ///< Of the texture, that it writes.
+  bool scalar = false;          ///< The image's red goes into all of the channels.
+  std::filesystem::path image;  ///< In the decal image's frame; empty: `value`, or the decal's image.
+  std::optional<std::array<double, 3>> value;  ///< As the texture stores it, 0..1: colours are sRGB.
+  double opacity = 1;                          ///< 0..1; that of the decal comes on top.
+  BlendMode blend = BlendMode::normal;
+};
+
 struct DecalJob {
   std::string name;             ///< Unique in the job.
   std::filesystem::path image;  ///< Absolute, or relative to the working folder.
@@ -54,8 +67,10 @@ struct DecalJob {
   std::vector<Reference> materials;  ///< The decal keeps to these; empty: all.
   std::optional<double> size;        ///< The image's width in scene units, > 0; for a lone feature.
   std::optional<Vec3> up;            ///< Scene direction, not 0; for a lone feature.
-  double opacity = 1;                ///< 0..1.
-  BlendMode blend = BlendMode::normal;
+  std::filesystem::path mask;        ///< Takes the place of the image's alpha; empty: none.
+  std::vector<DecalLayer>
+      layers;          ///< At most one for a texture's channel; the base colour's first, if there.
+  double opacity = 1;  ///< 0..1.
   DecalOutput output = DecalOutput::bake;
   UvConflict uv_conflict = UvConflict::separate;
   std::optional<double> offset;  ///< Of an overlay, scene units, >= 0; left out: default_offset().
@@ -67,11 +82,17 @@ struct DecalJob {
   Overlap overlap = Overlap::stop;
 };
 
+/// All the images that a decal names.
+std::vector<std::filesystem::path> images_of(const DecalJob& decal);
+
 /// A job file, version 1.
 struct Job {
-  std::filesystem::path path;    ///< The job file itself.
-  std::filesystem::path model;   ///< Absolute, or relative to the working folder.
-  int texture_size = 2048;       ///< Texels a side of textures that the job creates.
+  std::filesystem::path path;   ///< The job file itself.
+  std::filesystem::path model;  ///< Absolute, or relative to the working folder.
+  int texture_size = 2048;      ///< Texels a side of base colours that the job creates.
+  std::uint32_t gutter = 16;    ///< As Transfer::gutter.
+  std::optional<int>
+      resolution;  ///< Texels a side of other textures that it creates; none: the base colour's.
   std::vector<DecalJob> decals;  ///< At least one; later ones lie over earlier ones.
 };
 

@@ -52,8 +52,30 @@ std::optional<std::size_t> image_of_texture(const Json& texture) {
   return std::nullopt;
 }
 
-UvMapping read_uv_mapping(const Json& material) {
-  const auto* texture = find(material, {"pbrMetallicRoughness", "baseColorTexture"});
+const char* name_of(MaterialSlot slot) {
+  constexpr std::array names = {"baseColor", "metallicRoughness", "normal", "occlusion", "emissive"};
+  return names[static_cast<std::size_t>(slot)];
+}
+
+const Json* find_texture_info(const Json& material, MaterialSlot slot) {
+  switch (slot) {
+    case MaterialSlot::base_color:
+      return find(material, {"pbrMetallicRoughness", "baseColorTexture"});
+    case MaterialSlot::metallic_roughness:
+      return find(material, {"pbrMetallicRoughness", "metallicRoughnessTexture"});
+    case MaterialSlot::normal:
+      return find(material, {"normalTexture"});
+    case MaterialSlot::occlusion:
+      return find(material, {"occlusionTexture"});
+    case MaterialSlot::emissive:
+      return find(material, {"emissiveTexture"});
+  }
+  return nullptr;
+}
+
+UvMapping read_uv_mapping(const Json& material, MaterialSlot slot) {
+  const auto* texture = find_texture_info(material, slot);
+  if (texture == nullptr) texture = find_texture_info(material, MaterialSlot::base_color);
   return texture == nullptr ? UvMapping() : read_texture_mapping(*texture);
 }
 
@@ -69,6 +91,24 @@ UvMapping read_texture_mapping(const Json& reference) {
   return mapping;
 }
 
+MaterialTexture read_texture(const Document& document, const Json& material, MaterialSlot slot) {
+  MaterialTexture result;
+  const auto* info = find_texture_info(material, slot);
+  if (info == nullptr) {
+    if (slot == MaterialSlot::base_color) return result;
+    result = read_texture(document, material, MaterialSlot::base_color);
+    result.texture = result.image = std::nullopt;
+    return result;
+  }
+  result.texture = index_of(*info, "index");
+  const auto& texture = document.json["textures"][*result.texture];
+  result.image = image_of_texture(texture);
+  const auto [wrap_u, wrap_v] = read_wrap_modes(document, texture);
+  result.wrap_u = wrap_u;
+  result.wrap_v = wrap_v;
+  return result;
+}
+
 ModelMaterial read_material(const Document& document, const Json& entry) {
   ModelMaterial material;
   if (const auto* name = find(entry, {"name"}); name != nullptr && name->is_string())
@@ -80,14 +120,11 @@ ModelMaterial read_material(const Document& document, const Json& entry) {
   material.double_sided = double_sided != nullptr && *double_sided == true;
   material.base_colour_factor =
       numbers_or(find(entry, {"pbrMetallicRoughness", "baseColorFactor"}), material.base_colour_factor);
-  const auto* base = find(entry, {"pbrMetallicRoughness", "baseColorTexture"});
-  if (base == nullptr) return material;
-  material.texture = index_of(*base, "index");
-  const auto& texture = document.json["textures"][*material.texture];
-  material.image = image_of_texture(texture);
-  const auto [wrap_u, wrap_v] = read_wrap_modes(document, texture);
-  material.wrap_u = wrap_u;
-  material.wrap_v = wrap_v;
+  const MaterialTexture base = read_texture(document, entry, MaterialSlot::base_color);
+  material.texture = base.texture;
+  material.image = base.image;
+  material.wrap_u = base.wrap_u;
+  material.wrap_v = base.wrap_v;
   return material;
 }
 

@@ -183,6 +183,8 @@ class PartReader {
                    .positions = {},
                    .normals = {},
                    .uvs = {},
+                   .other_uvs = {},
+                   .tangents = {},
                    .triangles = {},
                    .mirrored = false};
     part.material = index_of(document_.json["meshes"][mesh]["primitives"][primitive], "material");
@@ -194,10 +196,16 @@ class PartReader {
       APPLIQUE_TRY(const auto normals, attribute(entry, "NORMAL", 3, count));
       part.normals = to_vectors(normals);
     }
+    if (entry.attributes.contains("TANGENT") && !part.normals.empty()) {
+      APPLIQUE_TRY(const auto tangents, attribute(entry, "TANGENT", 4, count));
+      for (std::size_t i = 0; i < count; ++i)
+        part.tangents.push_back({Vec3(&tangents[4 * i]), tangents[4 * i + 3] < 0 ? -1.0 : 1.0});
+    }
     APPLIQUE_CHECK(apply_morph_targets(part, entry));
     APPLIQUE_CHECK(place(part, entry));
     APPLIQUE_CHECK(read_uvs(part, entry));
     APPLIQUE_CHECK(read_triangles(part, entry));
+    for (Tangent& tangent : part.tangents) tangent.direction.normalize();
     return part;
   }
 
@@ -249,6 +257,7 @@ class PartReader {
     for (Vec3& p : part.positions) p = (matrix * p.homogeneous()).head<3>();
     const Eigen::Matrix3d normals = normal_matrix(matrix);
     for (Vec3& n : part.normals) n = normals * n;
+    for (Tangent& t : part.tangents) t.direction = matrix.topLeftCorner<3, 3>() * t.direction;
     return {};
   }
 
@@ -293,20 +302,39 @@ class PartReader {
       const Matrix4d matrix = sums[i] > 0 ? Matrix4d(blend[i] / sums[i]) : world_[part.node];
       part.positions[i] = (matrix * part.positions[i].homogeneous()).head<3>();
       if (!part.normals.empty()) part.normals[i] = normal_matrix(matrix) * part.normals[i];
+      if (!part.tangents.empty())
+        part.tangents[i].direction = matrix.topLeftCorner<3, 3>() * part.tangents[i].direction;
     }
     return {};
   }
 
   Result<void> read_uvs(ModelPart& part, const tinygltf::Primitive& entry) {
-    const UvMapping mapping =
-        part.material ? read_uv_mapping(document_.json["materials"][*part.material]) : UvMapping();
-    const std::string name = fmt::format("TEXCOORD_{}", mapping.set);
-    if (!entry.attributes.contains(name)) return {};
-    APPLIQUE_TRY(const auto values, attribute(entry, name, 2, part.positions.size()));
-    part.uvs.resize(part.positions.size());
-    for (std::size_t i = 0; i < part.uvs.size(); ++i)
-      part.uvs[i] = mapping.apply({values[2 * i], values[2 * i + 1]});
+    UvMapping mapping;
+    if (part.material) {
+      const auto& material = document_.json["materials"][*part.material];
+      mapping = read_uv_mapping(material);
+      for (const MaterialSlot slot : all_slots) {
+        const UvMapping other = read_uv_mapping(material, slot);
+        if (other == mapping || part.other_uvs.contains(other.set)) continue;
+        APPLIQUE_TRY(auto uvs, uv_set(part, entry, other.set));
+        if (!uvs.empty()) part.other_uvs[other.set] = std::move(uvs);
+      }
+    }
+    APPLIQUE_TRY(part.uvs, uv_set(part, entry, mapping.set));
+    for (auto& uv : part.uvs) uv = mapping.apply(uv);
     return {};
+  }
+
+  /// TEXCOORD_n as stored; empty where the primitive has none.
+  Result<std::vector<std::array<double, 2>>> uv_set(const ModelPart& part, const tinygltf::Primitive& entry,
+                                                    std::size_t set) {
+    const std::string name = fmt::format("TEXCOORD_{}", set);
+    std::vector<std::array<double, 2>> uvs;
+    if (!entry.attributes.contains(name)) return uvs;
+    APPLIQUE_TRY(const auto values, attribute(entry, name, 2, part.positions.size()));
+    uvs.resize(part.positions.size());
+    for (std::size_t i = 0; i < uvs.size(); ++i) uvs[i] = {values[2 * i], values[2 * i + 1]};
+    return uvs;
   }
 
   Result<void> read_triangles(ModelPart& part, const tinygltf::Primitive& entry) {

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -17,6 +18,13 @@
 
 namespace applique {
 
+/// A vertex's tangent in scene space, unit, and the sign by which the normal's cross product with it is the
+/// bitangent.
+struct Tangent {
+  Vec3 direction;
+  double sign;
+};
+
 /// The triangles of one primitive under one node, in scene space at the rest pose (node transforms, the
 /// skin's joints at their own transforms, the morph targets' default weights).
 struct ModelPart {
@@ -28,6 +36,9 @@ struct ModelPart {
   std::vector<Vec3> normals;               ///< Unit; from the file or computed.
   std::vector<std::array<double, 2>> uvs;  ///< Of the base-colour texture, KHR_texture_transform applied, in
                                            ///< texture space [0,1] before wrapping. Empty: no UVs.
+  /// TEXCOORD_n as stored, by n: the sets of the material's other textures that do not use the base colour's.
+  std::map<std::size_t, std::vector<std::array<double, 2>>> other_uvs;
+  std::vector<Tangent> tangents;  ///< From the file; empty: none, and MikkTSpace's are meant.
   std::vector<std::array<std::uint32_t, 3>> triangles;  ///< Lists, strips and fans alike, in drawing order;
                                                         ///< winding seen from outside.
   bool mirrored =

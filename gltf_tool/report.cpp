@@ -141,6 +141,7 @@ Json textures_of(const std::vector<TextureReport>& textures) {
   Json list = Json::array();
   for (const TextureReport& texture : textures)
     list.push_back({{"material", texture.material},
+                    {"slot", texture.slot},
                     {"width", texture.width},
                     {"height", texture.height},
                     {"created", texture.created},

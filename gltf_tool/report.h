@@ -11,12 +11,13 @@
 
 namespace applique {
 
-/// What a bake did to one base-colour texture.
+/// What a bake did to one texture.
 struct TextureReport {
-  std::string material;  ///< Name of its material.
-  int width = 0;         ///< Texels.
-  int height = 0;        ///< Texels.
-  bool created = false;  ///< The material had no base-colour texture before.
+  std::string material;                   ///< Name of its material.
+  std::string slot;                       ///< "baseColor", …
+  int width = 0;                          ///< Texels.
+  int height = 0;                         ///< Texels.
+  bool created = false;                   ///< The material had no texture there before.
   std::uint64_t separated_triangles = 0;  ///< That got texture space of their own.
   std::uint64_t covered_texels = 0;
   std::uint64_t gutter_texels = 0;

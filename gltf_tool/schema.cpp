@@ -47,6 +47,17 @@ const json& resolved(const json& schema, const json& root) {
   return root.at(json::json_pointer(schema.at("$ref").get<std::string>().substr(1)));
 }
 
+/// Of a choice between schemas ("anyOf"), the one that says what the value's parts are; else the schema
+/// itself.
+const json& narrowed(const json& schema, const json& value, const json& root) {
+  const auto choices = schema.find("anyOf");
+  if (choices == schema.end()) return schema;
+  const char* parts = value.is_object() ? "properties" : "items";
+  for (const json& choice : *choices)
+    if (const json& one = resolved(choice, root); value.is_structured() && one.contains(parts)) return one;
+  return schema;
+}
+
 /// A value and the schema for it, some way into a document.
 struct Place {
   const json* value;
@@ -56,6 +67,7 @@ struct Place {
 Place find_place(const json& document, const json& root, const Path& path) {
   Place place = {&document, &root};
   for (const std::string& token : path) {
+    place.schema = &narrowed(*place.schema, *place.value, root);
     if (place.value->is_array()) {
       place.value = &place.value->at(std::stoul(token));
       place.schema = &resolved(place.schema->at("items"), root);
@@ -132,7 +144,8 @@ std::string explain_dependency(const json& value, const json& schema) {
   return {};
 }
 
-std::string explain(const Place& place, const json& root) {
+std::string explain(Place place, const json& root) {
+  if (place.value->is_object()) place.schema = &narrowed(*place.schema, *place.value, root);
   if (place.value->is_object() && place.schema->contains("properties")) {
     for (std::string sentence :
          {explain_unknown(*place.value, *place.schema), explain_choice(*place.value, *place.schema),

@@ -226,6 +226,9 @@ Result<SolvedJob> solve_job(const Job& job, const StageCallback& on_stage, bool 
     decal.times.add("load_image", loaded.seconds);
     solved.times.add("load_images", watch.lap());  // what was waited for
     APPLIQUE_TRY(decal.image, of_decal(decal_job, std::move(loaded.image)));
+    // Read only once they are baked, but that they are there is to be known before the work.
+    for (const std::filesystem::path& path : images_of(decal_job))
+      if (!std::filesystem::exists(path)) APPLIQUE_CHECK(of_decal(decal_job, read_image(path)));
     APPLIQUE_CHECK(solve_geometry(solved.model, surfaces, decal, traced));
     decal.warnings.insert(decal.warnings.end(), decal.map.warnings.begin(), decal.map.warnings.end());
     solved.decals.push_back(std::move(decal));

@@ -14,7 +14,7 @@ namespace {
 using Corners = std::vector<std::array<Texel, 3>>;
 
 /// A tangent and the side of the bitangent: +1 where normal x tangent is one.
-struct Tangent {
+struct CornerTangent {
   Vec3 along = Vec3::Zero();
   double side = 1;
 
@@ -50,7 +50,7 @@ Vec3 direction_of_u(const std::array<Vec3, 3>& p, const std::array<Texel, 3>& uv
 }
 
 /// The tangents of a layout at each corner.
-std::vector<std::array<Tangent, 3>> tangents_of(const TangentFrames& frames, const Corners& layout) {
+std::vector<std::array<CornerTangent, 3>> tangents_of(const TangentFrames& frames, const Corners& layout) {
   using Place = std::tuple<std::uint32_t, double, double, bool>;
   std::map<Place, Vec3> sums;
   const auto place = [&](std::size_t t, std::size_t k) {
@@ -63,7 +63,7 @@ std::vector<std::array<Tangent, 3>> tangents_of(const TangentFrames& frames, con
     for (std::size_t k = 0; k < 3; ++k)
       sums.try_emplace(place(t, k), Vec3::Zero()).first->second +=
           direction_of_u(corners_of(frames, t), layout[t]);
-  std::vector<std::array<Tangent, 3>> tangents(layout.size());
+  std::vector<std::array<CornerTangent, 3>> tangents(layout.size());
   for (std::size_t t = 0; t < layout.size(); ++t)
     for (std::size_t k = 0; k < 3; ++k)
       // Seen from outside, v runs down and the bitangent up: a layout that is not mirrored has a negative
@@ -73,9 +73,9 @@ std::vector<std::array<Tangent, 3>> tangents_of(const TangentFrames& frames, con
   return tangents;
 }
 
-std::vector<std::array<Tangent, 3>> old_tangents(const TangentFrames& frames) {
+std::vector<std::array<CornerTangent, 3>> old_tangents(const TangentFrames& frames) {
   if (frames.tangents.empty()) return tangents_of(frames, frames.old_corners);
-  std::vector<std::array<Tangent, 3>> tangents(frames.triangles.size());
+  std::vector<std::array<CornerTangent, 3>> tangents(frames.triangles.size());
   for (std::size_t t = 0; t < tangents.size(); ++t)
     for (std::size_t k = 0; k < 3; ++k) {
       const auto& tangent = frames.tangents[frames.triangles[t][k]];
@@ -85,7 +85,7 @@ std::vector<std::array<Tangent, 3>> old_tangents(const TangentFrames& frames) {
   return tangents;
 }
 
-FrameTurn turn_between(const Tangent& from, const Tangent& to, const Vec3& normal) {
+FrameTurn turn_between(const CornerTangent& from, const CornerTangent& to, const Vec3& normal) {
   if (!from.valid() || !to.valid()) return {};
   const Vec3 old_up = from.side * normal.cross(from.along);
   const Vec3 new_up = to.side * normal.cross(to.along);

@@ -18,7 +18,6 @@ namespace {
 
 constexpr int largest_side = 8192;
 constexpr int best_grid = 64;
-constexpr int full_gutter = 16;      // texels, as a transfer's
 constexpr double slimmest = 32;      // length to width of what a circle on the surface is in a layout
 constexpr double coarsest = 32;      // pixels to a texel, along a line
 constexpr double fine_enough = 0.5;  // texels to a pixel: below, a bake warns
@@ -358,6 +357,7 @@ Result<UvLayout> lay_out_uvs(const SolvedJob& job, const LayoutRequest& request)
   Charting charting(job, request);
   charting.run();
   int fineness = wanted_fineness(job, request, charting.charts);
+  const int full_gutter = std::max(static_cast<int>(job.job.gutter), 1);
   const Packing packing(request, std::move(charting));
   if (request.created_size != 0) {
     for (int gutter = full_gutter; gutter > 0; gutter /= 2)

@@ -2,6 +2,7 @@
 // image by the face's affine map, plane -> image by the warp, a filtered sample of the image, blended over the texel.
 #version 450
 #extension GL_GOOGLE_include_directive : require
+#include "compositing.h"
 #include "transfer_types.h"
 
 layout(local_size_x = 8, local_size_y = 8) in;
@@ -31,10 +32,10 @@ layout(std140, set = 0, binding = 4) uniform Tables {
 uint block_at(uint index) { return plan[index / 4u][index % 4u]; }
 
 FaceMap face_at(uint index) {
-  uint first = constants.plan_faces + 4u * index;
-  uvec4 a = plan[first], b = plan[first + 1u], c = plan[first + 2u], d = plan[first + 3u];
+  uint first = constants.plan_faces + 5u * index;
+  uvec4 a = plan[first], b = plan[first + 1u], c = plan[first + 2u], d = plan[first + 3u], e = plan[first + 4u];
   return FaceMap(ivec2(a.xy), ivec2(a.zw), uintBitsToFloat(b.xy), uintBitsToFloat(b.zw), uintBitsToFloat(c.xy),
-                 uintBitsToFloat(c.zw), uintBitsToFloat(d.x), d.y, d.z, d.w);
+                 uintBitsToFloat(c.zw), uintBitsToFloat(d.xy), d.zw, e.x, e.y, e.z, e.w);
 }
 
 // Of the faces' grids.
@@ -132,37 +133,33 @@ vec2 in_grid(uint first, int cells, vec2 place) {
   return corner + f.x * (along - corner) + f.y * (across - corner);
 }
 
-// Trilinear probes along the footprint's longer axis. The place is `pixel + rest`; transparent outside the image.
-vec4 sample_decal(ivec2 pixel, vec2 rest, vec2 axis, float level, uint probes) {
+// The mean of bilinear probes over the footprint. The place is `face.pixel + rest`; transparent outside the image.
+vec4 sample_decal(FaceMap face, vec2 rest) {
+  uvec4 stored = levels[face.level];
+  float scale = 1.0 / float(1u << face.level);
+  // At the finest level the whole pixels stay apart, so that no bit of the rest is lost to them.
+  ivec2 whole = face.level == 0u ? face.pixel : ivec2(0);
+  vec2 middle = face.level == 0u ? rest - 0.5 : (vec2(face.pixel) + rest) * scale - 0.5;
   vec4 sum = vec4(0.0);
-  int finer = int(floor(level));
-  float blend = level - float(finer);
-  int count = int(probes) * (blend > 0.0 ? 2 : 1);
-  for (int i = 0; i < count; ++i) {
-    int probe = blend > 0.0 ? i >> 1 : i;
-    int coarser = blend > 0.0 ? i & 1 : 0;
-    uvec4 stored = levels[finer + coarser];
-    float scale = 1.0 / float(1 << (finer + coarser));
-    vec2 offset = rest + axis * ((float(probe) + 0.5) / float(probes) - 0.5);
-    vec2 place = vec2(pixel) * scale + offset * scale - 0.5;
-    if (finer + coarser == 0) place = offset - 0.5;
-    vec2 base = floor(place);
-    vec2 fraction = place - base;
-    ivec2 corner = ivec2(base) + (finer + coarser == 0 ? pixel : ivec2(0));
-    vec4 bilinear = vec4(0.0);
-    for (int k = 0; k < 4; ++k) {
-      ivec2 q = corner + ivec2(k & 1, k >> 1);
-      vec2 w = mix(1.0 - fraction, fraction, equal(ivec2(k & 1, k >> 1), ivec2(1)));
-      if (all(greaterThanEqual(q, ivec2(0))) && all(lessThan(q, ivec2(stored.yz)))) {
+  for (uint row = 0u; row < face.probes.y; ++row) {
+    vec2 start = middle + ((float(row) + 0.5) / float(face.probes.y) - 0.5) * scale * face.along_y;
+    for (uint column = 0u; column < face.probes.x; ++column) {
+      vec2 place = start + ((float(column) + 0.5) / float(face.probes.x) - 0.5) * scale * face.along_x;
+      vec2 base = floor(place);
+      vec2 fraction = place - base;
+      ivec2 corner = ivec2(base) + whole;
+      for (int k = 0; k < 4; ++k) {
+        ivec2 q = corner + ivec2(k & 1, k >> 1);
+        if (any(lessThan(q, ivec2(0))) || any(greaterThanEqual(q, ivec2(stored.yz)))) continue;
         uint at = stored.x + uint(q.y) * stored.y + uint(q.x) - constants.piece_first;
         if (at >= constants.piece_size) continue;
+        vec2 w = mix(1.0 - fraction, fraction, equal(ivec2(k & 1, k >> 1), ivec2(1)));
         uvec2 packed = decal[at];
-        bilinear += w.x * w.y * vec4(unpackHalf2x16(packed.x), unpackHalf2x16(packed.y));
+        sum += w.x * w.y * vec4(unpackHalf2x16(packed.x), unpackHalf2x16(packed.y));
       }
     }
-    sum += (blend > 0.0 ? (coarser == 1 ? blend : 1.0 - blend) : 1.0) * bilinear;
   }
-  return sum / float(probes);
+  return sum / float(face.probes.x * face.probes.y);
 }
 
 vec3 to_linear(vec3 c) { return mix(c / 12.92, pow((c + 0.055) / 1.055, vec3(2.4)), greaterThan(c, vec3(0.04045))); }
@@ -170,14 +167,12 @@ vec3 to_srgb(vec3 c) {
   return mix(c * 12.92, 1.055 * pow(c, vec3(1.0 / 2.4)) - 0.055, greaterThan(c, vec3(0.0031308)));
 }
 
-// `source` is premultiplied; both colours linear; the result's colour is straight. W3C compositing, §5 to §10.
-vec4 composite(vec4 source, vec4 below) {
-  float backdrop = constants.opaque != 0u ? 1.0 : below.a;
-  vec3 mixed = backdrop * source.rgb;                                             // normal
-  if (constants.blend == 1u) mixed = backdrop * source.rgb * below.rgb;           // multiply
-  if (constants.blend == 2u) mixed += backdrop * (source.a - source.rgb) * below.rgb;  // screen
-  vec3 colour = (1.0 - backdrop) * source.rgb + mixed + (1.0 - source.a) * backdrop * below.rgb;
-  return vec4(colour / (source.a + backdrop * (1.0 - source.a)), source.a + below.a * (1.0 - source.a));
+// The direction of the image's x in the texture's tangent frame, at `d` texels from the face's.
+vec2 directions(FaceMap face, vec2 d) {
+  uint first = face.first_point - 3u;
+  vec2 along = point_at(first) + point_at(first + 1u) * d.x + point_at(first + 2u) * d.y;
+  float squared = dot(along, along);
+  return squared > 0.0 ? along * inversesqrt(squared) : vec2(1.0, 0.0);
 }
 
 void main() {
@@ -229,12 +224,13 @@ void main() {
     }
     place = constants.half_size + constants.pixels_per_unit * warp(place);
   }
-  if (face.flags >= face_cells) place = in_grid(face.first_point, int(face.flags / face_cells), place);
+  uint cells = (face.flags & ~face_reversed) / face_cells;
+  if (cells > 0u) place = in_grid(face.first_point, int(cells), place);
   int index = work.y * constants.work_size.x + work.x;
   if (constants.keep_samples != 0u && seed == texel)
     work_words[constants.work_samples + index] = floatBitsToUint(vec2(face.pixel) + place);
 
-  vec4 source = constants.opacity * sample_decal(face.pixel, place, face.axis, face.level, face.probes);
+  vec4 source = constants.opacity * sample_decal(face, place);
   uint sum = constants.work_sums + 2u * uint(index);
   if ((constants.piece_flags & piece_follows) != 0u)
     source += uintBitsToFloat(uvec4(work_words[sum], work_words[sum + 1u]));
@@ -246,9 +242,20 @@ void main() {
   if (source.a <= 0.0) return;
   uvec2 stored = work_words[index];
   vec4 below = vec4(unpackUnorm2x16(stored.x), unpackUnorm2x16(stored.y));
-  vec4 result = composite(source, vec4(to_linear(below.rgb), below.a));
-  result.rgb = to_srgb(clamp(result.rgb, 0.0, 1.0));
-  result.a = clamp(result.a, 0.0, 1.0);
+  vec4 result;
+  if (constants.encoding == encoding_normal) {
+    vec2 along = directions(face, d);
+    vec2 across = (face.flags & face_reversed) != 0u ? vec2(along.y, -along.x) : vec2(-along.y, along.x);
+    result = composite_normal(constants.blend, source, below, along, across);
+  } else if (constants.encoding == encoding_data) {
+    result = composite(constants.blend, source, below, true);
+  } else {
+    result = composite(constants.blend, source, vec4(to_linear(below.rgb), below.a), constants.opaque != 0u);
+    result.rgb = to_srgb(clamp(result.rgb, 0.0, 1.0));
+  }
+  result = clamp(result, 0.0, 1.0);
   uvec4 value = uvec4(result * constants.max_value + 0.5) * uint(65535.0 / constants.max_value + 0.5);
+  uvec4 kept = uvec4(stored.x & 0xffffu, stored.x >> 16, stored.y & 0xffffu, stored.y >> 16);
+  value = mix(kept, value, notEqual(constants.channels & uvec4(1u, 2u, 4u, 8u), uvec4(0u)));
   work_words[index] = uvec2(value.x | value.y << 16, value.z | value.w << 16);
 }

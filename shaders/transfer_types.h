@@ -31,6 +31,12 @@ APPLIQUE_CONST uint warp_table_capacity = 992u;  // vec4s; with the levels just 
 APPLIQUE_CONST uint face_warped = 1u;
 APPLIQUE_CONST uint face_clamped = 2u;  // Too thin to extend: its gutter repeats its nearest texel.
 APPLIQUE_CONST uint face_cells = 4u;    // Times the cells along a side of a refined face: `value` is a place in its grid.
+APPLIQUE_CONST uint face_reversed = 0x80000000u;  // The texture's tangent frame is left-handed against the image's.
+
+// Encoding.
+APPLIQUE_CONST uint encoding_colour = 0u;
+APPLIQUE_CONST uint encoding_data = 1u;
+APPLIQUE_CONST uint encoding_normal = 2u;
 
 APPLIQUE_CONST uint piece_follows = 1u;  // Another piece precedes this one.
 APPLIQUE_CONST uint piece_goes_on = 2u;  // Another piece comes after it: nothing is blended yet.
@@ -55,11 +61,13 @@ struct FaceMap {
   vec2 value;
   vec2 dx;
   vec2 dy;
-  vec2 axis;  // The footprint's longer axis, pixels.
-  float level;
-  uint probes;
+  vec2 along_x;  // The sides of the footprint, pixels.
+  vec2 along_y;
+  uvec2 probes;  // Along each.
+  uint level;
   uint flags;
-  uint first_point;  // Of the grid, where there is one.
+  uint first_point;  // Of the grid, where there is one. For normals, before it: a direction and its change by texel.
+  uint padding;
 };
 
 struct TransferConstants {
@@ -71,6 +79,8 @@ struct TransferConstants {
   float opacity;
   uint blend;       // BlendMode.
   uint opaque;      // Whether the texture's alpha does not show.
+  uint encoding;
+  uint channels;    // Bit by channel: which are written.
   float max_value;  // 255 or 65535.
   uint keep_samples;
   uint steps;
@@ -90,8 +100,8 @@ struct TransferConstants {
 
 #ifdef __cplusplus
 static_assert(sizeof(RasterJob) == 48 && offsetof(RasterJob, key) == 36);
-static_assert(sizeof(FaceMap) == 64 && offsetof(FaceMap, axis) == 40 && offsetof(FaceMap, level) == 48);
-static_assert(sizeof(TransferConstants) == 112 && offsetof(TransferConstants, half_size) == 64);
+static_assert(sizeof(FaceMap) == 80 && offsetof(FaceMap, along_x) == 40 && offsetof(FaceMap, probes) == 56);
+static_assert(sizeof(TransferConstants) == 120 && offsetof(TransferConstants, half_size) == 72);
 }  // namespace applique::shader
 #endif
 #undef APPLIQUE_CONST

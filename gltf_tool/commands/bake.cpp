@@ -59,7 +59,8 @@ namespace {
 /// time.
 Result<void> check_outputs(const BakeArguments& arguments, const Job& job) {
   std::vector<std::filesystem::path> inputs = {job.path, job.model};
-  for (const DecalJob& decal : job.decals) inputs.push_back(decal.image);
+  for (const DecalJob& decal : job.decals)
+    for (std::filesystem::path& image : images_of(decal)) inputs.push_back(std::move(image));
   std::vector<std::filesystem::path> outputs = {arguments.output};
   for (const auto& output : {arguments.report, arguments.preview})
     if (output) outputs.push_back(*output);

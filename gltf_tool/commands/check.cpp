@@ -42,7 +42,8 @@ Result<void> run_check(const CheckArguments& arguments, const CommonArguments& c
 
   APPLIQUE_TRY(const Job job, load_job(arguments.job));
   std::vector<std::filesystem::path> outputs, inputs = {job.path, job.model};
-  for (const DecalJob& decal : job.decals) inputs.push_back(decal.image);
+  for (const DecalJob& decal : job.decals)
+    for (std::filesystem::path& image : images_of(decal)) inputs.push_back(std::move(image));
   for (const auto& output : {arguments.report, arguments.dump_region})
     if (output) outputs.push_back(*output);
   APPLIQUE_CHECK(check_distinct(outputs, inputs));

@@ -160,7 +160,7 @@ TEST(SetBaseColourImage, ReplacesTheImageInPlaceAndDropsItsBytes) {
   const std::size_t old_size = document.binary_chunk.size();
   const std::size_t old_png = read_image_bytes(document, 0)->size();
   const auto png = make_png(8, teal);
-  set_base_colour_image(document, 0, png);
+  set_slot_image(document, 0, MaterialSlot::base_color, png);
   EXPECT_EQ(read_image_bytes(document, 0).value(), png);
   EXPECT_EQ(read_image_bytes(document, 1).value(), other);
   EXPECT_EQ(document.json["textures"], before["textures"]);
@@ -175,7 +175,7 @@ TEST(SetBaseColourImage, CopiesATextureThatAnotherSlotUses) {
   document.json["materials"][0]["emissiveTexture"]["index"] = 0;
   const auto original = read_image_bytes(document, 0).value();
   const auto png = make_png(8, teal);
-  set_base_colour_image(document, 0, png);
+  set_slot_image(document, 0, MaterialSlot::base_color, png);
   EXPECT_EQ(document.json["materials"][0]["emissiveTexture"]["index"], 0);
   EXPECT_EQ(read_image_bytes(document, 0).value(), original);
   const Model model = decode_model(document).value();
@@ -187,7 +187,7 @@ TEST(SetBaseColourImage, GivesATextureToAMaterialWithoutOne) {
   const auto materials = isolate_materials(document, std::vector<PartKey>{{0, 0, 0}});
   document.json["materials"][0]["pbrMetallicRoughness"]["baseColorFactor"] = {0.5, 0.5, 0.5, 1.0};
   const auto png = make_png(8, teal);
-  set_base_colour_image(document, materials[0], png);
+  set_slot_image(document, materials[0], MaterialSlot::base_color, png);
   const Model model = decode_model(document).value();
   EXPECT_EQ(model.materials[0].base_colour_factor, (std::array<double, 4>{1, 1, 1, 1}));
   EXPECT_EQ(read_image_bytes(model.document, model.materials[0].image.value()).value(), png);
@@ -202,7 +202,7 @@ TEST(SetBaseColourImage, WinsOverAWebpOfTheTexture) {
   document.json["materials"].erase(2);
   const auto other = read_image_bytes(document, 2).value();
   const auto png = make_png(8, teal);
-  set_base_colour_image(document, 0, png);
+  set_slot_image(document, 0, MaterialSlot::base_color, png);
   const Model model = decode_model(document).value();
   EXPECT_EQ(read_image_bytes(model.document, model.materials[0].image.value()).value(), png);
   EXPECT_EQ(read_image_bytes(model.document, model.materials[1].image.value()).value(), other);
@@ -252,7 +252,7 @@ TEST_P(EditedModels, ReportNothingNewToTheValidator) {
     const ModelPart& first = model->parts.front();
     if (!first.uvs.empty()) {
       const auto materials = isolate_materials(document, std::vector<PartKey>{key_of(first)});
-      set_base_colour_image(document, materials[0], make_png(16, teal));
+      set_slot_image(document, materials[0], MaterialSlot::base_color, make_png(16, teal));
     }
     add_overlay(document, "crest", make_overlay(), make_png(8, teal));
     const auto output = folder / (std::to_string(names.size()) + "_" + path.stem().string() + GetParam());

@@ -92,7 +92,8 @@ TEST_F(JobTest, ReadsEveryField) {
   EXPECT_EQ(a.size, 1.5);
   EXPECT_EQ(a.up, Vec3(0, 1, 0));
   EXPECT_EQ(a.opacity, 0.25);
-  EXPECT_EQ(a.blend, BlendMode::multiply);
+  ASSERT_EQ(a.layers.size(), 1U);
+  EXPECT_EQ(a.layers[0].blend, BlendMode::multiply);
   EXPECT_EQ(a.output, DecalOutput::overlay);
   EXPECT_EQ(a.offset, 0.01);
   EXPECT_EQ(a.method, Method::paper);
@@ -134,7 +135,8 @@ TEST_F(JobTest, LeavesOutWhatMayBeLeftOut) {
   EXPECT_TRUE(std::holds_alternative<AutomaticRegion>(decal.region));
   EXPECT_FALSE(std::get<PositionPlace>(decal.features[0].place).max_distance);
   EXPECT_EQ(decal.opacity, 1);
-  EXPECT_EQ(decal.blend, BlendMode::normal);
+  ASSERT_EQ(decal.layers.size(), 1U);
+  EXPECT_EQ(decal.layers[0].blend, BlendMode::normal);
   EXPECT_EQ(decal.output, DecalOutput::bake);
   EXPECT_EQ(decal.method, Method::applique);
   EXPECT_EQ(decal.energy, Energy::isometric);

@@ -19,6 +19,7 @@
 #include "gpu/gpu_fixture.h"
 #include "job.h"
 #include "models/model_jobs.h"
+#include "models/reference_bake.h"
 #include "save_document.h"
 #include "solve_job.h"
 
@@ -126,7 +127,8 @@ TEST_F(Models, BakeOnTheGpuAsOnTheCpu) {
     for (const BakeTarget& target : *targets) {
       auto before = initial_texture(solved, target);
       ASSERT_TRUE(before) << before.error().message;
-      Transfer transfer = lay_out_transfer(solved, target, 0, before->width, before->height);
+      Transfer transfer =
+          lay_out_transfer(solved, target, target.shares.front(), before->width, before->height);
       transfer.image = &image;
       Image on_cpu = *before, on_gpu = *before;
       const TransferResult cpu = transfer_on_cpu(transfer, on_cpu, true);
@@ -146,6 +148,35 @@ TEST_F(Models, BakeOnTheGpuAsOnTheCpu) {
         colour = std::max(colour, std::abs(int(on_cpu.rgba[i]) - int(on_gpu.rgba[i])));
       EXPECT_LE(colour, 257);  // one step of 8 bits
       if (targets->size() == 1) expect_features_in_texture(solved, transfer, *run);
+    }
+  }
+}
+
+TEST_F(Models, AreFilteredLikeManySamples) {
+  auto gpu = GpuTransfer::create(device());
+  ASSERT_TRUE(gpu) << gpu.error().message;
+  for (const ModelJob& job : jobs) {
+    SCOPED_TRACE(job.name);
+    const SolvedJob solved = solve(job);
+    if (solved.decals[0].map.sheets > 1) continue;
+    Document document = solved.model.document;
+    const auto targets = plan_bake(solved, document);
+    ASSERT_TRUE(targets) << targets.error().message;
+    const DecalImage image = make_decal_image(solved.decals[0].image, solved.decals[0].region);
+    for (const BakeTarget& target : *targets) {
+      auto before = initial_texture(solved, target);
+      ASSERT_TRUE(before) << before.error().message;
+      Transfer transfer =
+          lay_out_transfer(solved, target, target.shares.front(), before->width, before->height);
+      transfer.image = &image;
+      Image baked = *before;
+      const auto run = gpu->run(transfer, baked, true);
+      ASSERT_TRUE(run) << run.error().message;
+      const BakeQuality quality =
+          compare_with_samples(transfer, *before, baked, *run, run->samples.size() / 20000 + 1);
+      std::printf("%-16s %6zu texels of %d x %d: %.2f dB, at most %.1f of 255\n", job.name.c_str(),
+                  quality.texels, before->width, before->height, quality.psnr, quality.largest);
+      EXPECT_GT(quality.psnr, 45);
     }
   }
 }

@@ -131,24 +131,25 @@ TEST(Raster, FacesFarAwayOrWithoutAnAreaAreLeftOut) {
   EXPECT_TRUE(plan_tile(transfer, 64, 64, {0, 0, 64, 64}).jobs.empty());
 }
 
-TEST(Footprint, FollowsTheSingularValues) {
+TEST(Footprint, IsTheTexelsParallelogram) {
   const DecalImage image = plain_decal({1, 1, 1, 1});
   const auto footprint = [&](double sx, double sy) {
     const Transfer transfer = rectangle(image, 0, 0, 64 / sx, 64 / sy);
     const TilePlan plan = plan_tile(transfer, 64, 64, {0, 0, 64, 64});
     return place_face(transfer, plan.placements[0]).footprint;
   };
-  EXPECT_EQ(footprint(1, 1).probes, 1);
-  EXPECT_NEAR(footprint(1, 1).level, 0, 1e-9);
-  EXPECT_EQ(footprint(0.25, 0.25).probes, 1);  // Magnified: no more than one.
+  using Probes = std::array<int, 2>;
+  EXPECT_EQ(footprint(1, 1).probes, (Probes{1, 1}));  // Copied.
+  EXPECT_EQ(footprint(0.25, 0.25).probes, (Probes{1, 1}));
   EXPECT_EQ(footprint(0.25, 0.25).level, 0);
-  EXPECT_NEAR(footprint(4, 4).level, 2, 1e-9);
-  EXPECT_EQ(footprint(8, 1).probes, 8);
-  EXPECT_NEAR(footprint(8, 1).level, 0, 1e-9);
-  EXPECT_NEAR(std::abs(footprint(8, 1).axis[0]), 8, 1e-9);
-  EXPECT_NEAR(std::abs(footprint(1, 8).axis[1]), 8, 1e-9);
-  EXPECT_EQ(footprint(64, 2).probes, 16);
-  EXPECT_NEAR(footprint(64, 2).level, 2, 1e-9);
+  EXPECT_EQ(footprint(4, 4).probes, (Probes{8, 8}));
+  EXPECT_EQ(footprint(4, 4).level, 0);
+  EXPECT_EQ(footprint(8, 8).level, 1);
+  EXPECT_EQ(footprint(8, 1).probes, (Probes{16, 2}));
+  EXPECT_NEAR(footprint(8, 1).along_x[0], 8, 1e-9);
+  EXPECT_NEAR(footprint(1, 8).along_y[1], 8, 1e-9);
+  EXPECT_EQ(footprint(64, 2).probes, (Probes{32, 1}));
+  EXPECT_EQ(footprint(64, 2).level, 2);
 }
 
 TEST(TransferOnCpu, ReproducesTheImagePixelByPixel) {

@@ -127,10 +127,14 @@ shader::FaceMap to_face_map(const Transfer& transfer, std::size_t index, const P
   map.value = to_floats(value);
   map.dx = to_floats(face.map.dx);
   map.dy = to_floats(face.map.dy);
-  map.axis = to_floats(face.footprint.axis);
-  map.level = static_cast<float>(face.footprint.level);
-  map.probes = static_cast<std::uint32_t>(face.footprint.probes);
+  map.along_x = to_floats(face.footprint.along_x);
+  map.along_y = to_floats(face.footprint.along_y);
+  map.level = static_cast<std::uint32_t>(face.footprint.level);
+  for (std::size_t k = 0; k < 2; ++k) map.probes[k] = static_cast<std::uint32_t>(face.footprint.probes[k]);
   map.flags = face.clamped ? shader::face_clamped : 0;
+  if (transfer.encoding == Encoding::normal)
+    for (const auto& along : {face.along.value, face.along.dx, face.along.dy})
+      points.push_back(to_floats(along));
   map.first_point = static_cast<std::uint32_t>(points.size());
   if (refined.cells > 0) {
     map.flags |= static_cast<std::uint32_t>(refined.cells) * shader::face_cells;
@@ -142,6 +146,7 @@ shader::FaceMap to_face_map(const Transfer& transfer, std::size_t index, const P
     map.flags |= shader::face_warped;
     if (transfer.warp->groups > 1) add_places(transfer, index, points);
   }
+  if (transfer.faces[index].reversed) map.flags |= shader::face_reversed;
   return map;
 }
 
@@ -269,17 +274,17 @@ Result<void> GpuTransfer::run_tile(Run& run, std::uint32_t sheet, const TexelRec
   std::vector<shader::FaceMap> faces;
   faces.reserve(plan.placements.size());
   std::vector<shader::vec2> points;
-  double finest = shader::max_levels;
+  std::size_t finest = shader::max_levels;
   bool warped = false;
   for (const Placement& placement : plan.placements) {
     const RefinedFace& refined = run.refined[placement.face];
     const PlacedFace face = place_face(transfer, placement, refined.cells);
     faces.push_back(to_face_map(transfer, placement.face, face, refined, points));
-    finest = std::min(finest, face.footprint.level);
+    finest = std::min(finest, static_cast<std::size_t>(face.footprint.level));
     warped |= face.warped && refined.cells == 0;
   }
   const std::size_t piece_texels = options_.max_buffer_bytes / (4 * sizeof(std::uint16_t));
-  APPLIQUE_CHECK(run.upload_decal(device, static_cast<std::size_t>(finest), piece_texels));
+  APPLIQUE_CHECK(run.upload_decal(device, finest, piece_texels));
   // What does not fit into the device's buffers is done in smaller pieces.
   const std::size_t work_texels = static_cast<std::size_t>(work.width) * work.height;
   const std::size_t region_texels = static_cast<std::size_t>(region.width) * region.height;
@@ -347,6 +352,8 @@ Result<void> GpuTransfer::run_tile(Run& run, std::uint32_t sheet, const TexelRec
   constants.opacity = static_cast<float>(transfer.opacity);
   constants.blend = static_cast<std::uint32_t>(transfer.blend);
   constants.opaque = transfer.opaque ? 1 : 0;
+  constants.encoding = static_cast<std::uint32_t>(transfer.encoding);
+  for (std::uint32_t c = 0; c < 4; ++c) constants.channels |= transfer.channels[c] ? 1U << c : 0;
   constants.max_value = run.bits == 8 ? 255.0F : 65535.0F;
   constants.keep_samples = run.keep_samples ? 1 : 0;
   if (warped) {

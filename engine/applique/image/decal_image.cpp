@@ -27,6 +27,15 @@ void for_rows(std::uint32_t width, std::uint32_t height, const Rows& rows) {
   rows(0, band(1));
 }
 
+const std::vector<float>& data_table() {
+  static const std::vector<float> table = [] {
+    std::vector<float> values(65536);
+    for (std::size_t i = 0; i < values.size(); ++i) values[i] = static_cast<float>(i) / 65535.0F;
+    return values;
+  }();
+  return table;
+}
+
 const std::vector<float>& linear_table() {
   static const std::vector<float> table = [] {
     std::vector<float> values(65536);
@@ -38,9 +47,8 @@ const std::vector<float>& linear_table() {
   return table;
 }
 
-void fill_base(const Image& image, const Region& region, Texel* texels) {
+void fill_base(const Image& image, const Region& region, const std::vector<float>& linear, Texel* texels) {
   constexpr std::uint32_t rows_at_once = 32;  // Few enough for their coverage to stay in the cache.
-  const std::vector<float>& linear = linear_table();
   for_rows(image.width, image.height, [&](std::uint32_t first, std::uint32_t last) {
     for (std::uint32_t top = first; top < last; top += rows_at_once) {
       const std::uint32_t bottom = std::min(top + rows_at_once, last);
@@ -88,7 +96,7 @@ double linear_to_srgb(double linear) {
   return linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1 / 2.4) - 0.055;
 }
 
-DecalImage make_decal_image(const Image& image, const Region& region) {
+DecalImage make_decal_image(const Image& image, const Region& region, bool linear) {
   DecalImage decal;
   decal.frame = region.frame();
   DecalImage::Level level = {0, static_cast<std::uint32_t>(image.width),
@@ -99,7 +107,7 @@ DecalImage make_decal_image(const Image& image, const Region& region) {
     decal.levels.push_back(level);
   }
   decal.texels.resize(std::size_t{level.offset} + 1);
-  fill_base(image, region, decal.texels.data());
+  fill_base(image, region, linear ? data_table() : linear_table(), decal.texels.data());
   for (std::size_t k = 1; k < decal.levels.size(); ++k) {
     halve(&decal.texels[decal.levels[k - 1].offset], decal.levels[k - 1], decal.levels[k],
           &decal.texels[decal.levels[k].offset]);

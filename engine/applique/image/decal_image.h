@@ -11,9 +11,10 @@ namespace applique {
 
 class Region;
 
-/// The decal's image ready to be sampled: linear light, premultiplied alpha, cut by the region's contour (its
-/// coverage of each pixel, anti-aliased, multiplies the alpha), with a mip pyramid of box-filtered levels.
-/// Outside level 0 the image is transparent: a texel of level k is the mean of the 2^k x 2^k pixels at (x, y)
+/// The decal's image ready to be sampled: linear light (or data as they are), premultiplied alpha, cut by the
+/// region's contour (its coverage of each pixel, anti-aliased, multiplies the alpha), with a mip pyramid of
+/// box-filtered levels. Outside level 0 the image is transparent: a texel of level k is the mean of the 2^k x
+/// 2^k pixels at (x, y)
 /// * 2^k, and each level has half the size of the one below, rounded up.
 struct DecalImage {
   struct Level {
@@ -26,8 +27,8 @@ struct DecalImage {
   std::vector<std::array<float, 4>> texels;  ///< All levels one after another, row by row from the top.
 };
 
-/// Cuts `image` by `region` and builds the pyramid.
-DecalImage make_decal_image(const Image& image, const Region& region);
+/// Cuts `image` by `region` and builds the pyramid. `linear`: the image's values are data, not sRGB colours.
+DecalImage make_decal_image(const Image& image, const Region& region, bool linear = false);
 
 /// IEC 61966-2-1, values in [0, 1].
 double srgb_to_linear(double encoded);

@@ -235,20 +235,29 @@ AffineMap affine_map(const std::array<Texel, 3>& corners,
   return map;
 }
 
-// From the singular values of the map from a texel to pixels, as anisotropic texture units do.
-Footprint footprint_of(const AffineMap& map, std::size_t levels) {
-  const double a = map.dx[0], b = map.dy[0], c = map.dx[1], d = map.dy[1];
-  // The longer axis is the eigenvector of J J^T with the larger eigenvalue.
-  const double xx = a * a + b * b, xy = a * c + b * d, yy = c * c + d * d;
-  const double middle = 0.5 * (xx + yy), spread = std::hypot(0.5 * (xx - yy), xy);
-  const double major = std::sqrt(middle + spread), minor = std::sqrt(std::max(0.0, middle - spread));
-  const double angle = 0.5 * std::atan2(2 * xy, xx - yy);
+// Whether texels are pixels: then the image is copied, not filtered.
+bool is_unscaled(const AffineMap& map) {
+  constexpr double tolerance = 1e-3;
+  const double across = map.dx[0] * map.dy[0] + map.dx[1] * map.dy[1];
+  return std::abs(std::hypot(map.dx[0], map.dx[1]) - 1) < tolerance &&
+         std::abs(std::hypot(map.dy[0], map.dy[1]) - 1) < tolerance && std::abs(across) < tolerance;
+}
 
+Footprint footprint_of(const AffineMap& map, std::size_t levels) {
+  constexpr double probes_a_pixel = 2, most_short = 8, most_long = 32;
   Footprint footprint;
-  footprint.axis = {major * std::cos(angle), major * std::sin(angle)};
-  footprint.probes = static_cast<int>(std::clamp(std::ceil(major / std::max(minor, 1.0)), 1.0, 16.0));
-  footprint.level = std::clamp(std::log2(std::max({major / footprint.probes, minor, 1.0})), 0.0,
-                               static_cast<double>(levels - 1));
+  if (is_unscaled(map)) return footprint;
+  footprint.along_x = {map.dx[0], map.dx[1]};
+  footprint.along_y = {map.dy[0], map.dy[1]};
+  const std::array<double, 2> sides = {std::hypot(map.dx[0], map.dx[1]), std::hypot(map.dy[0], map.dy[1])};
+  const auto [shorter, longer] = std::minmax(sides[0], sides[1]);
+  const double coarsest =
+      std::max(probes_a_pixel * shorter / most_short, probes_a_pixel * longer / most_long);
+  footprint.level = static_cast<int>(
+      std::clamp(std::ceil(std::log2(std::max(coarsest, 1.0))), 0.0, static_cast<double>(levels - 1)));
+  for (std::size_t k = 0; k < 2; ++k)
+    footprint.probes[k] = static_cast<int>(
+        std::clamp(std::ceil(probes_a_pixel * std::ldexp(sides[k], -footprint.level)), 1.0, most_long));
   return footprint;
 }
 
@@ -360,6 +369,11 @@ PlacedFace place_face(const Transfer& transfer, const Placement& placement, int 
   placed.map = in_grid         ? affine_map(corners, {{{0, 0}, {n, 0}, {0, n}}})
                : placed.warped ? affine_map(corners, plane)
                                : to_pixels;
+  if (transfer.encoding == Encoding::normal) {
+    std::array<std::array<double, 2>, 3> along;
+    for (int k = 0; k < 3; ++k) along[k] = {face.along[k].real(), face.along[k].imag()};
+    placed.along = affine_map(corners, along);
+  }
   placed.clamped = std::abs(triangle_area2(corners)) < longest;
   return placed;
 }

@@ -62,11 +62,13 @@ struct AffineMap {
   }
 };
 
-/// How a face's texels sample the image: `probes` trilinear samples along `axis`, at one level (a fraction).
+/// How a face's texels sample the image: a grid of bilinear probes over the parallelogram that a texel's
+/// square is there, at one level of the pyramid. The shorter side has up to eight probes; the level is the
+/// finest that these and four times as many along the longer side do for.
 struct Footprint {
-  std::array<double, 2> axis = {0, 0};  ///< Longer axis of a texel's image, pixels.
-  double level = 0;
-  int probes = 1;  ///< 1 to 16.
+  std::array<double, 2> along_x = {0, 0}, along_y = {0, 0};  ///< The parallelogram's sides, pixels.
+  int level = 0;
+  std::array<int, 2> probes = {1, 1};  ///< Along each side.
 };
 
 /// All that both twins derive from a placement.
@@ -75,6 +77,7 @@ struct PlacedFace {
   /// pixels. A warp with groups needs more than a plane point: there, to the place in a grid of one cell.
   AffineMap map;
   Footprint footprint;
+  AffineMap along;  ///< To TransferFace::along; for normals.
   bool warped = false;
   bool clamped = false;  ///< Thinner than a texel: its gutter repeats its nearest texel, it is not extended.
 };

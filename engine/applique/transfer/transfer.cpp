@@ -7,6 +7,8 @@
 #include "applique/transfer/raster.h"
 #include "applique/transfer/refine.h"
 
+#include "compositing.h"
+
 namespace applique {
 namespace {
 
@@ -92,44 +94,48 @@ void add_bilinear(const DecalImage& image, std::size_t level, Pixel pixel, doubl
 }
 
 Colour sample_decal(const DecalImage& image, Pixel pixel, const Footprint& footprint) {
-  const auto finer = static_cast<std::size_t>(footprint.level);
-  const double blend = footprint.level - static_cast<double>(finer);
+  const auto [columns, rows] = footprint.probes;
   Colour sum{};
-  for (int i = 0; i < footprint.probes; ++i) {
-    const double along = (i + 0.5) / footprint.probes - 0.5;
-    const Pixel probe = {pixel.x + along * footprint.axis[0], pixel.y + along * footprint.axis[1]};
-    add_bilinear(image, finer, probe, (1 - blend) / footprint.probes, sum);
-    if (blend > 0) add_bilinear(image, finer + 1, probe, blend / footprint.probes, sum);
+  for (int row = 0; row < rows; ++row) {
+    const double y = (row + 0.5) / rows - 0.5;
+    for (int column = 0; column < columns; ++column) {
+      const double x = (column + 0.5) / columns - 0.5;
+      add_bilinear(image, static_cast<std::size_t>(footprint.level),
+                   {pixel.x + x * footprint.along_x[0] + y * footprint.along_y[0],
+                    pixel.y + x * footprint.along_x[1] + y * footprint.along_y[1]},
+                   1.0 / (columns * rows), sum);
+    }
   }
   return sum;
 }
 
-// `source` is premultiplied, the others straight. W3C compositing, §5 to §10.
-Colour composite(const Colour& source, const Colour& below, BlendMode mode, bool opaque) {
-  const double alpha = source[3], backdrop = opaque ? 1 : below[3];
-  Colour result{};
-  for (int c = 0; c < 3; ++c) {
-    double mixed = source[c];
-    if (mode == BlendMode::multiply) mixed = source[c] * below[c];
-    if (mode == BlendMode::screen) mixed = source[c] + alpha * below[c] - source[c] * below[c];
-    const double premultiplied =
-        (1 - backdrop) * source[c] + backdrop * mixed + (1 - alpha) * backdrop * below[c];
-    result[c] = premultiplied / (alpha + backdrop * (1 - alpha));
+// The texel's own encoding.
+compositing::vec4 composite(const Colour& source, const compositing::vec4& below, const Transfer& transfer,
+                            Vec2 along, bool reversed) {
+  const auto mode = static_cast<std::uint32_t>(transfer.blend);
+  const compositing::vec4 over(source[0], source[1], source[2], source[3]);
+  if (transfer.encoding == Encoding::normal) {
+    const Vec2 x = along == Vec2(0) ? Vec2(1) : along / std::abs(along);
+    const Vec2 y = Vec2(0, reversed ? -1 : 1) * x;
+    return compositing::composite_normal(mode, over, below, {x.real(), x.imag()}, {y.real(), y.imag()});
   }
-  result[3] = alpha + below[3] * (1 - alpha);
+  if (transfer.encoding == Encoding::data) return compositing::composite(mode, over, below, true);
+  compositing::vec4 linear = below;
+  for (int c = 0; c < 3; ++c) linear[c] = srgb_to_linear(below[c]);
+  compositing::vec4 result = compositing::composite(mode, over, linear, transfer.opaque);
+  for (int c = 0; c < 3; ++c) result[c] = linear_to_srgb(clamp01(result[c]));
   return result;
 }
 
-void blend_over(std::uint16_t* texel, const Colour& source, const Transfer& transfer, int bits) {
-  Colour below;
-  for (int c = 0; c < 3; ++c) below[c] = srgb_to_linear(texel[c] / 65535.0);
-  below[3] = texel[3] / 65535.0;
-  const Colour result = composite(source, below, transfer.blend, transfer.opaque);
-  for (int c = 0; c < 4; ++c) {
-    const double value = c < 3 ? linear_to_srgb(clamp01(result[c])) : clamp01(result[c]);
-    const double steps = bits == 8 ? 255 : 65535;
-    texel[c] = static_cast<std::uint16_t>(std::floor(value * steps + 0.5) * (65535 / steps));
-  }
+void blend_over(std::uint16_t* texel, const Colour& source, const Transfer& transfer, Vec2 along,
+                bool reversed, int bits) {
+  compositing::vec4 below;
+  for (int c = 0; c < 4; ++c) below[c] = texel[c] / 65535.0;
+  const compositing::vec4 result = composite(source, below, transfer, along, reversed);
+  const double steps = bits == 8 ? 255 : 65535;
+  for (int c = 0; c < 4; ++c)
+    if (transfer.channels[static_cast<std::size_t>(c)])
+      texel[c] = static_cast<std::uint16_t>(std::floor(clamp01(result[c]) * steps + 0.5) * (65535 / steps));
 }
 
 // `refined` by face. Adds to `total`.
@@ -187,7 +193,10 @@ void composite_sheet(const Transfer& transfer, std::uint32_t sheet, const std::v
       }
       Colour source = sample_decal(*transfer.image, pixel, face.footprint);
       for (double& channel : source) channel *= transfer.opacity;
-      if (source[3] > 0) blend_over(texture.pixel(column + work.x, row + work.y), source, transfer, bits);
+      if (source[3] <= 0) continue;
+      const auto along = face.clamped ? face.along.at(seed[0], seed[1]) : face.along.at(x, y);
+      blend_over(texture.pixel(column + work.x, row + work.y), source, transfer, {along[0], along[1]},
+                 transfer.faces[index].reversed, bits);
     }
   });
 

@@ -17,7 +17,32 @@ namespace applique {
 using Texel = std::array<double, 2>;
 
 enum class WrapMode : std::uint32_t { repeat, clamp, mirror };
-enum class BlendMode : std::uint32_t { normal, multiply, screen };
+/// What a texel's values are: a colour (sRGB, composited in linear light), numbers as they are (roughness,
+/// occlusion, …), or a tangent-space normal.
+enum class Encoding : std::uint32_t { colour, data, normal };
+
+/// The modes of W3C Compositing and Blending Level 1, and two more: `add` saturates at 1, `erase` takes away
+/// alpha. Normals know two, normal and add (shaders/compositing.h has both sorts).
+enum class BlendMode : std::uint32_t {
+  normal,
+  multiply,
+  screen,
+  overlay,
+  darken,
+  lighten,
+  color_dodge,
+  color_burn,
+  hard_light,
+  soft_light,
+  difference,
+  exclusion,
+  hue,
+  saturation,
+  color,
+  luminosity,
+  add,
+  erase
+};
 
 /// One patch triangle laid out in a texture. What is written at a texel depends on the exact map there: its
 /// barycentrics in `texel` give a plane point from `plane`, which the warp carries to the image; where
@@ -26,6 +51,10 @@ struct TransferFace {
   std::array<Texel, 3> texel;  ///< Either orientation.
   std::array<Vec2, 3> plane;
   std::array<Vec2, 3> image;  ///< The warp's image of `plane`, plane units (ImageFrame makes them pixels).
+  /// For normals: by corner, the direction of the image's x in the texture's tangent frame (+x its tangent,
+  /// +y its bitangent), of any length, and whether the image's y is a quarter turn clockwise from there.
+  std::array<Vec2, 3> along = {1, 1, 1};
+  bool reversed = false;
   bool linear = true;
   std::uint32_t sheet = 0;  ///< Rank by depth among the patch faces over one surface face: larger is above.
 };
@@ -42,6 +71,8 @@ struct Transfer {
   const DecalImage* image = nullptr;
   double opacity = 1;
   BlendMode blend = BlendMode::normal;
+  Encoding encoding = Encoding::colour;                     ///< Of the texture and of the image.
+  std::array<bool, 4> channels = {true, true, true, true};  ///< Which of the texture's are written.
   WrapMode wrap_u = WrapMode::repeat;
   WrapMode wrap_v = WrapMode::repeat;
   std::uint32_t gutter =

@@ -1,0 +1,21 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "model.h"
+
+namespace applique {
+
+/// The tangent frames of a part's triangles, by triangle and corner, that a viewer takes its normal map's
+/// vectors to be in: the file's where it has them, else those of MikkTSpace (Mikkelsen 2008, which glTF
+/// prescribes): of the triangles about a vertex (one position, normal and texture coordinate) that are not
+/// mirrored against one another, the mean of the texture's u direction in the vertex's tangent plane,
+/// weighted by angle. Tangents run with u; bitangents, the sign times normal x tangent, run against v, which
+/// points down. `uvs` by vertex, of the normal texture.
+std::vector<std::array<Tangent, 3>> tangent_frames(const ModelPart& part,
+                                                   std::span<const std::array<double, 2>> uvs);
+
+}  // namespace applique
