@@ -14,6 +14,7 @@
 #include "instances.h"
 #include "overlay.h"
 #include "overlay_layout.h"
+#include "separate_uvs.h"
 #include "write_tangents.h"
 
 namespace applique {
@@ -66,8 +67,7 @@ void warn_of_overlap(SolvedDecal& decal, const TargetWork& work, const TransferR
   decal.warnings.push_back(
       {"uv_overlap",
        fmt::format("decal '{}': {} texels of '{}' are shown by other surface too, where the decal appears "
-                   "as well; give that surface texture coordinates of its own, or the decal \"output\": "
-                   "\"overlay\"",
+                   "as well; \"uv_conflict\": \"separate\" gives it texture space of its own there",
                    decal.job.name, result.shared_texels, work.report.material)});
 }
 
@@ -295,12 +295,14 @@ Result<std::unique_ptr<GpuBaker>> create_baker(Device device) {
 Result<BakedJob> bake_job(SolvedJob& job, GpuBaker& baker, const StageCallback& on_stage,
                           const TextureEncoding& encoding) {
   BakedJob baked;
-  baked.document = job.model.document;
   Stopwatch watch;
   const auto show = [&](const std::string& stage, double done) {
     if (on_stage) on_stage(stage, done);
   };
   show("preparing the textures", 0);
+  APPLIQUE_TRY(const auto separated, separate_uvs(job));
+  baked.times.add("separate_uvs", watch.lap());
+  baked.document = job.model.document;
   APPLIQUE_TRY(auto targets, plan_bake(job, baked.document));
   APPLIQUE_CHECK(write_tangents(job.model, targets, baked.document));
   APPLIQUE_TRY(auto works, prepare(job, baked.document, std::move(targets), encoding));
@@ -312,7 +314,12 @@ Result<BakedJob> bake_job(SolvedJob& job, GpuBaker& baker, const StageCallback& 
   baked.times.add("encode_textures", watch.lap());
   APPLIQUE_CHECK(add_overlays(job, encoding, baked));
   baked.times.add("overlay", watch.lap());
-  for (const TargetWork& work : works) baked.textures.push_back(work.report);
+  for (TargetWork& work : works) {
+    for (const std::uint32_t part : work.target.parts)
+      if (std::binary_search(separated.begin(), separated.end(), part))
+        work.report.separated_triangles += job.model.parts[part].triangles.size();
+    baked.textures.push_back(work.report);
+  }
   return baked;
 }
 

@@ -95,7 +95,7 @@ Result<void> check_uvs(const SolvedJob& job, const BakeTarget& target) {
         ErrorCode::uvs_missing,
         fmt::format(
             "decal '{}': mesh {}{}, primitive {}, has no texture coordinates to bake into; give the decal "
-            "\"output\": \"overlay\", or unwrap the mesh first",
+            "\"uv_conflict\": \"separate\", or \"output\": \"overlay\"",
             job.decals[target.shares.front().decal].job.name, part.mesh,
             name.empty() ? "" : fmt::format(" '{}'", name), part.primitive));
   }

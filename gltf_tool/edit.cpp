@@ -52,7 +52,8 @@ std::vector<std::size_t> isolate_meshes(Document& document, std::span<const Part
   return result;
 }
 
-/// For each part, which of its mesh's touched instances it belongs to: 0 for the first node, and so on.
+}  // namespace
+
 std::vector<std::size_t> instance_ranks(std::span<const PartKey> parts) {
   // mesh -> touched nodes; all others together are the first.
   std::map<std::size_t, std::set<std::optional<std::size_t>>> instances;
@@ -67,6 +68,8 @@ std::vector<std::size_t> instance_ranks(std::span<const PartKey> parts) {
   }
   return ranks;
 }
+
+namespace {
 
 /// How often the document's meshes use a material, by primitives and by variants.
 std::map<std::size_t, std::size_t> count_material_uses(const Document& document) {
@@ -121,17 +124,6 @@ bool is_shown_elsewhere(Document& document, std::size_t image, std::size_t textu
   return shown;
 }
 
-std::size_t count_view_uses(const Document& document, std::size_t view) {
-  std::size_t uses = 0;
-  const auto count = [&](const Json& object, auto& self) -> void {
-    if (object.is_object() && index_of(object, "bufferView") == view) ++uses;
-    if (object.is_structured())
-      for (const auto& member : object) self(member, self);
-  };
-  count(document.json, count);
-  return uses;
-}
-
 /// Takes an image that nothing uses out of the list, unless something here unknown may count images.
 void remove_image(Document& document, std::size_t image) {
   if (find(document.json, {"extensions", "EXT_lights_image_based"}) != nullptr) return;
@@ -145,7 +137,7 @@ void remove_image(Document& document, std::size_t image) {
 
 /// Replaces an image's bytes and keeps its other members.
 void replace_image(Document& document, std::size_t image, std::span<const std::uint8_t> bytes,
-                   const char* fallback) {
+                   const std::string& fallback) {
   auto& entry = document.json["images"][image];
   const auto view = index_of(entry, "bufferView");
   if (view && count_view_uses(document, *view) == 1) {
@@ -220,7 +212,7 @@ void drop_factors(Json& material, MaterialSlot slot) {
 /// The texture's only source becomes an image of these bytes: in place of an image that it alone uses, else a
 /// new one.
 void set_texture_image(Document& document, std::size_t texture, std::span<const std::uint8_t> bytes,
-                       const char* name) {
+                       const std::string& name) {
   std::vector<std::size_t> own;
   auto& entry = document.json["textures"][texture];
   each_source(entry, [&](const Json& object) {
@@ -339,6 +331,20 @@ void set_slot_image(Document& document, std::size_t material, MaterialSlot slot,
     owner[key]["index"] = texture;
   }
   set_texture_image(document, texture, bytes, name_of(slot));
+}
+
+void set_slot_images(Document& document, std::size_t material, const std::vector<SlotPointer>& slots,
+                     std::span<const std::uint8_t> bytes, const std::string& name) {
+  auto& entry = document.json["materials"][material];
+  auto& textures = document.json["textures"];
+  std::size_t texture = entry[slots.front()]["index"].get<std::size_t>();
+  if (count_texture_uses(document, texture) > slots.size()) {
+    Json copy = textures[texture];
+    texture = textures.size();
+    textures.push_back(std::move(copy));
+  }
+  for (const SlotPointer& slot : slots) entry[slot]["index"] = texture;
+  set_texture_image(document, texture, bytes, name);
 }
 
 }  // namespace applique

@@ -18,6 +18,10 @@ struct PartKey {
   bool every_node = false;  ///< It stands for all nodes that show the mesh and have no part in the list.
 };
 
+/// For each part, which of its mesh's instances among the parts it belongs to: 0 for the first node, and so
+/// on.
+std::vector<std::size_t> instance_ranks(std::span<const PartKey> parts);
+
 /// Makes the material of each given part (all that a decal touches) one that nothing else uses, and returns
 /// its index, by part. A mesh that other nodes show too is copied for the node (accessors stay shared), but
 /// not for a part that stands for all of them; a material that other primitives, or variants, use is copied;
@@ -34,6 +38,15 @@ std::vector<std::size_t> isolate_materials(Document& document, std::span<const P
 /// which the document then requires: a second image beside it would cost more than it saves.
 void set_slot_image(Document& document, std::size_t material, MaterialSlot slot,
                     std::span<const std::uint8_t> bytes);
+
+/// A texture reference in a material: /normalTexture, /extensions/KHR_materials_clearcoat/clearcoatTexture.
+using SlotPointer = Document::Json::json_pointer;
+
+/// Shows an image (bytes of a PNG, JPEG or WebP) in some slots of an isolated material that show one texture
+/// so far. The texture is copied first when others use it; its sampler, and the slots' texture coordinates,
+/// stay. `name` is for a new image.
+void set_slot_images(Document& document, std::size_t material, const std::vector<SlotPointer>& slots,
+                     std::span<const std::uint8_t> bytes, const std::string& name);
 
 /// Adds an image of PNG, JPEG or WebP bytes: in the chunk of a GLB, else as a new file named after `name`.
 /// Returns its index.

@@ -278,6 +278,15 @@ Result<std::vector<double>> read_accessor(const tinygltf::Model& model, int acce
   return values;
 }
 
+Result<std::vector<double>> read_stored(const tinygltf::Model& model, int accessor, int& components,
+                                        const std::string& what) {
+  const auto& entry = model.accessors[static_cast<std::size_t>(accessor)];
+  components = tinygltf::GetNumComponentsInType(static_cast<std::uint32_t>(entry.type));
+  return read_elements<double>(model, accessor, components, what, [&](const std::uint8_t* at) {
+    return load_number(at, entry.componentType, false);
+  });
+}
+
 Result<std::vector<std::uint32_t>> read_integers(const tinygltf::Model& model, int accessor, int components,
                                                  const std::string& what) {
   const int type = model.accessors[static_cast<std::size_t>(accessor)].componentType;

@@ -26,6 +26,11 @@ Result<tinygltf::Model> decode_geometry(const Document& document, const Buffers&
 Result<std::vector<double>> read_accessor(const tinygltf::Model& model, int accessor, int components,
                                           const std::string& what);
 
+/// The elements of an accessor of scalars or vectors as they are stored: normalized integers stay integers.
+/// `components` is set to the components of an element.
+Result<std::vector<double>> read_stored(const tinygltf::Model& model, int accessor, int& components,
+                                        const std::string& what);
+
 /// The elements of a scalar or vector accessor of unsigned integers, one after the other.
 Result<std::vector<std::uint32_t>> read_integers(const tinygltf::Model& model, int accessor, int components,
                                                  const std::string& what);

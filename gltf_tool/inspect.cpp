@@ -98,6 +98,7 @@ MaterialSummary summarise_material(const Model& model, std::optional<std::size_t
       uv_area += std::abs(signed_area);
       turned += signed_area < 0 ? 1 : 0;
       with_area += signed_area != 0 ? 1 : 0;
+      summary.collapsed_triangles += signed_area == 0 ? 1 : 0;
     }
   }
   summary.covered_texels = coverage.covered();
@@ -152,6 +153,7 @@ Json to_json(const MaterialSummary& m) {
   json["covered_texels"] = m.covered_texels;
   json["shared_texels"] = m.shared_texels;
   json["mirrored"] = m.mirrored;
+  json["collapsed_triangles"] = m.collapsed_triangles;
   json["texel_density"] = m.texel_density;
   return json;
 }

@@ -23,9 +23,11 @@ struct MaterialSummary {
   std::array<double, 2> uv_lower = {0, 0};         ///< Range of the texture coordinates, before wrapping.
   std::array<double, 2> uv_upper = {0, 0};
   double covered_texels = 0;  ///< Share of the texture under some triangle, 0..1, sampled at 512 x 512.
-  double shared_texels = 0;   ///< Share of those under more than one triangle: a decal there shows twice.
+  double shared_texels = 0;   ///< Share of those under more than one triangle: a decal there is seen twice,
+                              ///< unless it gets texture space of its own.
   double mirrored = 0;        ///< Share of the triangles with the rarer UV orientation, 0..0.5.
-  double texel_density = 0;   ///< Texels per scene unit, mean over the area; 0 without texture or UVs.
+  std::size_t collapsed_triangles = 0;  ///< With texture coordinates on a line or a point.
+  double texel_density = 0;  ///< Texels per scene unit, mean over the area; 0 without texture or UVs.
 };
 
 /// A primitive under a node.

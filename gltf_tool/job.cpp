@@ -143,6 +143,12 @@ PlanarLimits limits_of(const json& planar) {
   return limits;
 }
 
+UvConflict uv_conflict_of(const std::string& name) {
+  static const std::map<std::string, UvConflict> choices = {
+      {"separate", UvConflict::separate}, {"error", UvConflict::error}, {"share", UvConflict::share}};
+  return choices.at(name);
+}
+
 DecalJob decal_of(const json& decal, const std::filesystem::path& folder) {
   DecalJob out;
   out.name = decal["name"].get<std::string>();
@@ -160,6 +166,7 @@ DecalJob decal_of(const json& decal, const std::filesystem::path& folder) {
   out.layers = layers_of(decal, folder);
   out.output = decal.value("output", "bake") == "overlay" ? DecalOutput::overlay : DecalOutput::bake;
   out.instance = decal.value("instance", "this") == "all" ? Instance::all : Instance::only_this;
+  out.uv_conflict = uv_conflict_of(decal.value("uv_conflict", "separate"));
   if (decal.contains("offset")) out.offset = decal["offset"].get<double>();
   out.method = method_of(decal.value("method", name_of(out.method)));
   if (decal.contains("planar")) out.planar = limits_of(decal["planar"]);

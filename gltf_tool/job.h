@@ -35,6 +35,13 @@ enum class DecalOutput { bake, overlay };
 /// them.
 enum class Instance { only_this, all };
 
+/// What becomes of a baked decal on triangles whose texels other triangles show too, or that have none.
+enum class UvConflict {
+  separate,  ///< The triangles get texture space of their own.
+  error,     ///< The job fails.
+  share,     ///< The decal appears on the other triangles as well.
+};
+
 /// A pin as the job file states it.
 struct JobFeature {
   Pixel image;
@@ -70,7 +77,8 @@ struct DecalJob {
   double opacity = 1;  ///< 0..1.
   DecalOutput output = DecalOutput::bake;
   Instance instance = Instance::only_this;  ///< Of a baked decal.
-  std::optional<double> offset;             ///< Of an overlay, scene units, >= 0; left out: default_offset().
+  UvConflict uv_conflict = UvConflict::separate;
+  std::optional<double> offset;  ///< Of an overlay, scene units, >= 0; left out: default_offset().
   Method method = Method::applique;
   PlanarLimits planar;                ///< Of Method::planar.
   Parents parents = Parents::upwind;  ///< Of Method::expmap.

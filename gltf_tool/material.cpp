@@ -32,17 +32,6 @@ WrapMode read_wrap(const Json& sampler, const char* key) {
   }
 }
 
-/// The image that can be decoded here: WebP where offered, else the core one; KTX2 and DDS only where alone.
-std::optional<std::size_t> image_of(const Json& texture) {
-  if (const auto* webp = find(texture, {"extensions", "EXT_texture_webp"}))
-    if (const auto image = index_of(*webp, "source")) return image;
-  if (const auto image = index_of(texture, "source")) return image;
-  for (const char* extension : {"KHR_texture_basisu", "MSFT_texture_dds"})
-    if (const auto* object = find(texture, {"extensions", extension}))
-      if (const auto image = index_of(*object, "source")) return image;
-  return std::nullopt;
-}
-
 }  // namespace
 
 std::array<double, 2> UvMapping::apply(const std::array<double, 2>& uv) const {
@@ -51,6 +40,16 @@ std::array<double, 2> UvMapping::apply(const std::array<double, 2>& uv) const {
   const double u = scale[0] * uv[0];
   const double v = scale[1] * uv[1];
   return {offset[0] + c * u + s * v, offset[1] - s * u + c * v};
+}
+
+std::optional<std::size_t> image_of_texture(const Json& texture) {
+  if (const auto* webp = find(texture, {"extensions", "EXT_texture_webp"}))
+    if (const auto image = index_of(*webp, "source")) return image;
+  if (const auto image = index_of(texture, "source")) return image;
+  for (const char* extension : {"KHR_texture_basisu", "MSFT_texture_dds"})
+    if (const auto* object = find(texture, {"extensions", extension}))
+      if (const auto image = index_of(*object, "source")) return image;
+  return std::nullopt;
 }
 
 const char* name_of(MaterialSlot slot) {
@@ -75,12 +74,15 @@ const Json* find_texture_info(const Json& material, MaterialSlot slot) {
 }
 
 UvMapping read_uv_mapping(const Json& material, MaterialSlot slot) {
-  UvMapping mapping;
   const auto* texture = find_texture_info(material, slot);
   if (texture == nullptr) texture = find_texture_info(material, MaterialSlot::base_color);
-  if (texture == nullptr) return mapping;
-  mapping.set = index_of(*texture, "texCoord").value_or(0);
-  if (const auto* transform = find(*texture, {"extensions", "KHR_texture_transform"})) {
+  return texture == nullptr ? UvMapping() : read_texture_mapping(*texture);
+}
+
+UvMapping read_texture_mapping(const Json& reference) {
+  UvMapping mapping;
+  mapping.set = index_of(reference, "texCoord").value_or(0);
+  if (const auto* transform = find(reference, {"extensions", "KHR_texture_transform"})) {
     mapping.set = index_of(*transform, "texCoord").value_or(mapping.set);
     mapping.offset = numbers_or(find(*transform, {"offset"}), mapping.offset);
     mapping.scale = numbers_or(find(*transform, {"scale"}), mapping.scale);
@@ -100,11 +102,10 @@ MaterialTexture read_texture(const Document& document, const Json& material, Mat
   }
   result.texture = index_of(*info, "index");
   const auto& texture = document.json["textures"][*result.texture];
-  result.image = image_of(texture);
-  if (const auto sampler = index_of(texture, "sampler")) {
-    result.wrap_u = read_wrap(document.json["samplers"][*sampler], "wrapS");
-    result.wrap_v = read_wrap(document.json["samplers"][*sampler], "wrapT");
-  }
+  result.image = image_of_texture(texture);
+  const auto [wrap_u, wrap_v] = read_wrap_modes(document, texture);
+  result.wrap_u = wrap_u;
+  result.wrap_v = wrap_v;
   return result;
 }
 
@@ -125,6 +126,13 @@ ModelMaterial read_material(const Document& document, const Json& entry) {
   material.wrap_u = base.wrap_u;
   material.wrap_v = base.wrap_v;
   return material;
+}
+
+std::array<WrapMode, 2> read_wrap_modes(const Document& document, const Json& texture) {
+  const auto sampler = index_of(texture, "sampler");
+  if (!sampler) return {WrapMode::repeat, WrapMode::repeat};
+  const auto& entry = document.json["samplers"][*sampler];
+  return {read_wrap(entry, "wrapS"), read_wrap(entry, "wrapT")};
 }
 
 }  // namespace applique

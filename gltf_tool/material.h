@@ -48,6 +48,16 @@ struct MaterialTexture {
 /// colour's.
 MaterialTexture read_texture(const Document& document, const Document::Json& material, MaterialSlot slot);
 
+/// The mapping of one texture reference ({"index": …, "texCoord": …}) of a material.
+UvMapping read_texture_mapping(const Document::Json& reference);
+
+/// The image of a texture that can be decoded here: WebP where offered, else the core one; KTX2 and DDS only
+/// where alone.
+std::optional<std::size_t> image_of_texture(const Document::Json& texture);
+
+/// The wrap modes of a texture of a checked document.
+std::array<WrapMode, 2> read_wrap_modes(const Document& document, const Document::Json& texture);
+
 /// How a material of a checked document shows its base colour.
 ModelMaterial read_material(const Document& document, const Document::Json& material);
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 #include <unordered_map>
 
 #include <Eigen/Geometry>
@@ -36,6 +37,29 @@ struct PositionHash {
   }
 };
 
+/// Gives those parts of a node that have none area-weighted vertex normals, smooth across vertices at one
+/// position: a border between primitives is no crease.
+void add_smooth_normals(std::span<ModelPart> parts) {
+  std::unordered_map<std::array<double, 3>, Vec3, PositionHash> sums;
+  const auto key = [](const Vec3& p) { return std::array<double, 3>{p.x(), p.y(), p.z()}; };
+  for (const ModelPart& part : parts) {
+    if (!part.normals.empty()) continue;
+    for (const auto& t : part.triangles) {
+      const Vec3 normal =
+          (part.positions[t[1]] - part.positions[t[0]]).cross(part.positions[t[2]] - part.positions[t[0]]);
+      for (const std::uint32_t corner : t)
+        sums.try_emplace(key(part.positions[corner]), Vec3::Zero()).first->second += normal;
+    }
+  }
+  for (ModelPart& part : parts) {
+    if (!part.normals.empty()) continue;
+    part.normals.assign(part.positions.size(), Vec3::UnitZ());
+    for (std::size_t i = 0; i < part.normals.size(); ++i)
+      if (const auto sum = sums.find(key(part.positions[i])); sum != sums.end())
+        part.normals[i] = sum->second;
+  }
+}
+
 /// Decodes the parts that the default scene shows.
 class PartReader {
  public:
@@ -69,6 +93,7 @@ class PartReader {
         if (!part.triangles.empty()) parts.push_back(std::move(part));
       }
     }
+    add_normals(parts);
     if (parts.empty())
       return fail(
           ErrorCode::model_invalid,
@@ -105,6 +130,19 @@ class PartReader {
     }
   }
 
+  /// Parts of one node follow each other.
+  static void add_normals(std::vector<ModelPart>& parts) {
+    for (std::size_t first = 0; first < parts.size();) {
+      std::size_t last = first;
+      while (last < parts.size() && parts[last].node == parts[first].node) ++last;
+      add_smooth_normals(std::span(parts).subspan(first, last - first));
+      first = last;
+    }
+    for (ModelPart& part : parts)
+      for (Vec3& normal : part.normals)
+        normal = normal.norm() > 0 ? Vec3(normal.normalized()) : Vec3(Vec3::UnitZ());
+  }
+
   Result<ModelPart> read_part(std::size_t node, std::size_t mesh, std::size_t primitive) {
     const auto& entry = model_.meshes[mesh].primitives[primitive];
     where_ = fmt::format("'{}', mesh {}, primitive {}", document_.name, mesh, primitive);
@@ -139,9 +177,6 @@ class PartReader {
     APPLIQUE_CHECK(read_uvs(part, entry));
     read_colours(part, entry);
     APPLIQUE_CHECK(read_triangles(part, entry));
-    if (part.normals.empty()) part.normals = smooth_normals(part.positions, part.triangles);
-    for (Vec3& normal : part.normals)
-      normal = normal.norm() > 0 ? Vec3(normal.normalized()) : Vec3(Vec3::UnitZ());
     for (Tangent& tangent : part.tangents) tangent.direction.normalize();
     return part;
   }
@@ -337,8 +372,12 @@ Result<Model> load_model(const std::filesystem::path& path) {
 }
 
 Result<Image> load_model_image(const Model& model, std::size_t image) {
-  APPLIQUE_TRY(const auto bytes, read_image_bytes(model.document, image));
-  return decode_image(bytes, fmt::format("'{}', image {}", model.document.name, image));
+  return load_document_image(model.document, image);
+}
+
+Result<Image> load_document_image(const Document& document, std::size_t image) {
+  APPLIQUE_TRY(const auto bytes, read_image_bytes(document, image));
+  return decode_image(bytes, fmt::format("'{}', image {}", document.name, image));
 }
 
 ModelSurface build_surface(const Model& model, const std::vector<std::size_t>& nodes,

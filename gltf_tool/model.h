@@ -86,6 +86,9 @@ std::vector<Vec3> smooth_normals(std::span<const Vec3> positions,
 /// Decodes an image of the document. Errors as read_image's, naming the image.
 Result<Image> load_model_image(const Model& model, std::size_t image);
 
+/// The same for a document that is not decoded as a model.
+Result<Image> load_document_image(const Document& document, std::size_t image);
+
 /// The surface that a decal may use: parts welded together, and where each surface face came from.
 struct ModelSurface {
   SurfaceMesh mesh;

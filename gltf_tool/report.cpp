@@ -146,6 +146,7 @@ Json textures_of(const std::vector<TextureReport>& textures) {
                     {"height", texture.height},
                     {"created", texture.created},
                     {"format", texture.format},
+                    {"separated_triangles", texture.separated_triangles},
                     {"covered_texels", texture.covered_texels},
                     {"gutter_texels", texture.gutter_texels},
                     {"shared_texels", texture.shared_texels}});

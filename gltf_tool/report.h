@@ -13,12 +13,13 @@ namespace applique {
 
 /// What a bake did to one texture.
 struct TextureReport {
-  std::string material;  ///< Name of its material.
-  std::string slot;      ///< "baseColor", …
-  int width = 0;         ///< Texels.
-  int height = 0;        ///< Texels.
-  bool created = false;  ///< The material had no texture there before.
-  std::string format;    ///< As it is stored: "png", "jpeg" or "webp".
+  std::string material;                   ///< Name of its material.
+  std::string slot;                       ///< "baseColor", …
+  int width = 0;                          ///< Texels.
+  int height = 0;                         ///< Texels.
+  bool created = false;                   ///< The material had no texture there before.
+  std::string format;                     ///< As it is stored: "png", "jpeg" or "webp".
+  std::uint64_t separated_triangles = 0;  ///< That got texture space of their own.
   std::uint64_t covered_texels = 0;
   std::uint64_t gutter_texels = 0;
   std::uint64_t shared_texels = 0;

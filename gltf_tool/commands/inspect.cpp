@@ -44,7 +44,7 @@ void write_material(Lines& out, const MaterialSummary& material) {
   else
     line(out, "    texture: none; a decal brings one");
   if (material.triangles_without_uvs == material.triangles) {
-    line(out, "    texture coordinates: none; a decal has to be an overlay");
+    line(out, "    texture coordinates: none; a decal makes some for the triangles under it");
     return;
   }
   line(out, "    texture coordinates: {}, from ({:.3f}, {:.3f}) to ({:.3f}, {:.3f})",
@@ -53,8 +53,15 @@ void write_material(Lines& out, const MaterialSummary& material) {
   if (material.triangles_without_uvs > 0)
     line(out, "    {} triangles without texture coordinates", material.triangles_without_uvs);
   if (material.shared_texels > 0)
-    line(out, "    {:.1f} % of the covered texels are shown more than once: a decal there repeats",
+    line(out,
+         "    {:.1f} % of the covered texels are shown more than once: a decal there gets texture space of "
+         "its "
+         "own",
          100 * material.shared_texels);
+  if (material.mirrored > 0)
+    line(out, "    {:.1f} % of the triangles are mirrored in the texture", 100 * material.mirrored);
+  if (material.collapsed_triangles > 0)
+    line(out, "    {} triangles have no area in the texture", material.collapsed_triangles);
 }
 
 void write_surface(Lines& out, const ModelSummary& summary) {

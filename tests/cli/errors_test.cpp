@@ -129,7 +129,11 @@ TEST_F(ErrorsTest, SizeMissingForALoneFeature) {
 TEST_F(ErrorsTest, UvsMissingNamesTheMeshAndTheWayOut) {
   json job = good_job();
   job["decals"][0]["features"] = {feature(16, 32, -0.25, 0, -3), feature(48, 32, 0.25, 0, -3)};
-  expect_failure(job, 3, {"'crest'", "'Bare'", "no texture coordinates", "overlay"},
+  job["decals"][0]["uv_conflict"] = "share";
+  expect_failure(job, 3, {"'crest'", "'Bare'", "no texture coordinates", "separate", "overlay"},
+                 "bake job.json -o out.glb");
+  job["decals"][0]["uv_conflict"] = "error";
+  expect_failure(job, 3, {"'crest'", "'paint'", "without texture coordinates", "separate"},
                  "bake job.json -o out.glb");
 }
 

@@ -31,6 +31,7 @@ constexpr CodeEntry code_table[] = {
     {ErrorCode::features_disconnected, "features_disconnected", 3},
     {ErrorCode::features_mirrored, "features_mirrored", 3},
     {ErrorCode::uvs_missing, "uvs_missing", 3},
+    {ErrorCode::uvs_shared, "uvs_shared", 3},
     {ErrorCode::not_solved, "not_solved", 3},
     {ErrorCode::output_unwritable, "output_unwritable", 4},
     {ErrorCode::no_device, "no_device", 5},

@@ -31,6 +31,7 @@ enum class ErrorCode {
   features_disconnected,
   features_mirrored,
   uvs_missing,
+  uvs_shared,
   not_solved,
   // The output cannot be written.
   output_unwritable,

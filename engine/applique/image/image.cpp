@@ -216,7 +216,11 @@ Result<Image> read_image(const std::filesystem::path& path, Floats floats) {
   return decode_image(bytes, path.string(), floats);
 }
 
-Result<Image> decode_image(std::span<const std::uint8_t> bytes, const std::string& name, Floats floats) {
+namespace {
+
+/// Without `pixels`, the image's `rgba` may stay empty.
+Result<Image> decode(std::span<const std::uint8_t> bytes, const std::string& name, Floats floats,
+                     bool pixels) {
   const auto invalid = [&](const std::string& reason) {
     return fail(ErrorCode::image_invalid, fmt::format("image '{}': {}", name, reason));
   };
@@ -262,6 +266,7 @@ Result<Image> decode_image(std::span<const std::uint8_t> bytes, const std::strin
   image.height = spec.height;
   image.channels = channels;
   image.bits = wide ? 16 : 8;
+  if (!pixels) return image;
   const bool done = wide ? read_pixels<std::uint16_t>(*input, OIIO::TypeDesc::UINT16, image)
                          : read_pixels<std::uint8_t>(*input, OIIO::TypeDesc::UINT8, image);
   if (!done) return invalid(reason_of(*input));
@@ -269,6 +274,17 @@ Result<Image> decode_image(std::span<const std::uint8_t> bytes, const std::strin
   if (reader == "tiff" && image.has_alpha() && spec.get_int_attribute("oiio:UnassociatedAlpha") == 0)
     make_straight(image);
   return image;
+}
+
+}  // namespace
+
+Result<Image> decode_image(std::span<const std::uint8_t> bytes, const std::string& name, Floats floats) {
+  return decode(bytes, name, floats, true);
+}
+
+Result<std::array<int, 2>> image_size(std::span<const std::uint8_t> bytes, const std::string& name) {
+  APPLIQUE_TRY(const Image image, decode(bytes, name, Floats::light, false));
+  return std::array{image.width, image.height};
 }
 
 Result<std::vector<std::uint8_t>> encode_png(const Image& image) {

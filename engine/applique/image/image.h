@@ -48,6 +48,9 @@ Result<Image> read_image(const std::filesystem::path& path, Floats floats = Floa
 Result<Image> decode_image(std::span<const std::uint8_t> bytes, const std::string& name,
                            Floats floats = Floats::light);
 
+/// Width and height of an image in memory, without its pixels. Errors: as decode_image's, of its header.
+Result<std::array<int, 2>> image_size(std::span<const std::uint8_t> bytes, const std::string& name);
+
 /// PNG bytes with the image's own channels and bits.
 Result<std::vector<std::uint8_t>> encode_png(const Image& image);
 

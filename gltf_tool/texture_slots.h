@@ -1,0 +1,26 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "document.h"
+#include "edit.h"
+#include "material.h"
+#include "uv_resample.h"
+
+namespace applique {
+
+/// A texture that a material shows in one slot, or in several through the same texture coordinates.
+struct TextureSlots {
+  std::vector<SlotPointer> slots;
+  std::string name;  ///< The first slot's: "normalTexture".
+  std::size_t texture = 0;
+  UvMapping mapping;
+  TexelContent content = TexelContent::data;
+};
+
+/// All textures of a material of a checked document, those of its extensions too.
+std::vector<TextureSlots> find_texture_slots(const Document::Json& material);
+
+}  // namespace applique

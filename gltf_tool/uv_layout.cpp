@@ -1,0 +1,378 @@
+#include "uv_layout.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <optional>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "texel_map.h"
+#include "uv_atlas.h"
+#include "uv_charts.h"
+#include "uv_raster.h"
+
+namespace applique {
+namespace {
+
+constexpr int largest_side = 8192;
+constexpr int best_grid = 64;
+constexpr double slimmest = 32;      // length to width of what a circle on the surface is in a layout
+constexpr double coarsest = 32;      // pixels to a texel, along a line
+constexpr double fine_enough = 0.5;  // texels to a pixel: below, a bake warns
+
+std::array<Vec3, 3> surface_corners(const SolvedJob& job, const SeparatedTriangle& t) {
+  const ModelPart& part = job.model.parts[t.part];
+  const auto& corners = part.triangles[t.triangle];
+  return {part.positions[corners[0]], part.positions[corners[1]], part.positions[corners[2]]};
+}
+
+double area_of(const std::array<Vec3, 3>& p) {
+  return 0.5 * (p[1] - p[0]).cross(p[2] - p[0]).norm();
+}
+
+/// A triangle of space flat in the plane, its first corner at the origin.
+std::array<Texel, 3> flatten(const std::array<Vec3, 3>& p) {
+  const Vec3 side = p[1] - p[0];
+  const Vec3 other = p[2] - p[0];
+  const double length = side.norm();
+  if (length == 0) return {};
+  return {Texel{0, 0}, Texel{length, 0}, Texel{other.dot(side) / length, side.cross(other).norm() / length}};
+}
+
+/// Length to width of what a circle becomes under the affine map between the triangles; infinite where one
+/// has collapsed.
+double slimness(const std::array<Texel, 3>& from, const std::array<Texel, 3>& to) {
+  if (doubled_area(from) == 0) return HUGE_VAL;
+  const auto [longer, shorter] = half_axes(map_between(from, to));
+  return shorter > 0 ? longer / shorter : HUGE_VAL;
+}
+
+const PatchFace& patch_face(const SolvedJob& job, const SeparatedTriangle& t) {
+  return job.decals[t.decal].map.patch.faces[t.face];
+}
+
+/// The layout of the decal's embedding, in pixels.
+std::array<Texel, 3> plane_corners(const SolvedJob& job, const SeparatedTriangle& t) {
+  const SolvedDecal& decal = job.decals[t.decal];
+  const double pixels = decal.region.frame().pixels_per_unit();
+  std::array<Texel, 3> corners = {};
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Vec2 place = decal.map.plane[patch_face(job, t).vertices[k]];
+    corners[k] = {pixels * place.real(), -pixels * place.imag()};
+  }
+  return corners;
+}
+
+/// The image on the triangle, in pixels.
+std::array<Texel, 3> image_corners(const SolvedJob& job, const SeparatedTriangle& t) {
+  const SolvedDecal& decal = job.decals[t.decal];
+  const double pixels = decal.region.frame().pixels_per_unit();
+  std::array<Texel, 3> corners = {};
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Vec2 place = decal.map.image[patch_face(job, t).vertices[k]];
+    corners[k] = {pixels * place.real(), -pixels * place.imag()};
+  }
+  return corners;
+}
+
+/// Laid out alone: as it is on the surface, with about as many texels as the decal has pixels there. One
+/// without an area gets half a texel, so that it is a triangle.
+std::array<Texel, 3> own_corners(const SolvedJob& job, const SeparatedTriangle& t) {
+  const auto surface = surface_corners(job, t);
+  const double area = area_of(surface);
+  const double scale = std::sqrt(std::max(pixels_on(job, t), 1.0) / area);
+  std::array<Texel, 3> corners = flatten(surface);
+  for (Texel& corner : corners)
+    for (double& x : corner) x *= scale;
+  if (area > 0 && slimness({Texel{0, 0}, Texel{1, 0}, Texel{0, 1}}, corners) < 1e6) return corners;
+  return {Texel{0, 0}, Texel{1, 0}, Texel{0, 1}};
+}
+
+/// Charts a part of the triangles and remembers the place of their corners.
+class Charting {
+ public:
+  Charting(const SolvedJob& job, const LayoutRequest& request) : job_(job), request_(request) {
+    corners.resize(request.triangles.size());
+  }
+
+  void run() {
+    std::vector<std::uint32_t> rest = keep_old_layout();
+    rest = follow_decals(rest);
+    for (const std::uint32_t i : rest) {
+      corners[i] = own_corners(job_, request_.triangles[i]);
+      charts.push_back({{i}, false, {0, 0}, {0, 0, 0, 0}});
+    }
+    if (request_.created_size == 0)
+      for (const AtlasChart& chart : charts)
+        if (!chart.kept) refine(chart);
+  }
+
+  std::vector<std::array<Texel, 3>> corners;  ///< Old texels where the chart is kept, else new ones.
+  std::vector<AtlasChart> charts;
+
+ private:
+  /// A chart has a texel for each pixel of the decal; more where the old texture has.
+  void refine(const AtlasChart& chart) {
+    constexpr double most = 16;
+    std::vector<std::array<Texel, 3>> from;
+    std::vector<std::array<Texel, 3>> to;
+    for (const std::uint32_t i : chart.triangles) {
+      const SeparatedTriangle& t = request_.triangles[i];
+      if (job_.model.parts[t.part].uvs.empty()) return;
+      from.push_back(corners[i]);
+      to.push_back(texels_of(job_, t, request_.texture));
+    }
+    const double density = std::clamp(usual_stretch(from, to), 1.0, most);
+    for (const std::uint32_t i : chart.triangles)
+      for (Texel& corner : corners[i])
+        for (double& x : corner) x *= density;
+  }
+
+  /// Returns the triangles that cannot keep theirs.
+  std::vector<std::uint32_t> keep_old_layout() {
+    std::map<std::array<double, 5>, std::uint32_t> places;
+    std::vector<std::uint32_t> members;
+    std::vector<ChartTriangle> list;
+    std::vector<std::uint32_t> rest;
+    for (std::uint32_t i = 0; i < request_.triangles.size(); ++i) {
+      const SeparatedTriangle& t = request_.triangles[i];
+      if (!has_texture_space(job_, t, request_.texture)) {
+        rest.push_back(i);
+        continue;
+      }
+      ChartTriangle triangle{texels_of(job_, t, request_.texture), {}};
+      const auto surface = surface_corners(job_, t);
+      for (std::size_t k = 0; k < 3; ++k) {
+        const Texel& texel = triangle.corners[k];
+        triangle.vertices[k] =
+            places
+                .try_emplace({surface[k].x(), surface[k].y(), surface[k].z(), texel[0], texel[1]},
+                             static_cast<std::uint32_t>(places.size()))
+                .first->second;
+      }
+      members.push_back(i);
+      list.push_back(triangle);
+    }
+    add_charts(members, list, true);
+    return rest;
+  }
+
+  /// Returns the triangles that the decals' embeddings do not lay out.
+  std::vector<std::uint32_t> follow_decals(const std::vector<std::uint32_t>& triangles) {
+    std::map<std::pair<std::size_t, PatchVertexId>, std::uint32_t> places;
+    std::vector<std::uint32_t> members;
+    std::vector<ChartTriangle> list;
+    std::vector<std::uint32_t> rest;
+    for (const std::uint32_t i : triangles) {
+      const SeparatedTriangle& t = request_.triangles[i];
+      ChartTriangle triangle{plane_corners(job_, t), {}};
+      if (!(slimness(flatten(surface_corners(job_, t)), triangle.corners) <= slimmest)) {
+        rest.push_back(i);
+        continue;
+      }
+      for (std::size_t k = 0; k < 3; ++k)
+        triangle.vertices[k] = places
+                                   .try_emplace({t.decal, patch_face(job_, t).vertices[k]},
+                                                static_cast<std::uint32_t>(places.size()))
+                                   .first->second;
+      members.push_back(i);
+      list.push_back(triangle);
+    }
+    add_charts(members, list, false);
+    return rest;
+  }
+
+  void add_charts(const std::vector<std::uint32_t>& members, const std::vector<ChartTriangle>& list,
+                  bool kept) {
+    for (std::size_t j = 0; j < members.size(); ++j) corners[members[j]] = list[j].corners;
+    for (auto& grown : grow_charts(list)) {
+      for (std::uint32_t& t : grown) t = members[t];
+      charts.push_back({std::move(grown), kept, {0, 0}, {0, 0, 0, 0}});
+    }
+  }
+
+  const SolvedJob& job_;
+  const LayoutRequest& request_;
+};
+
+int floor_to(double value, int grid) {
+  return static_cast<int>(std::floor(value / grid)) * grid;
+}
+
+int ceil_to(double value, int grid) {
+  return static_cast<int>(std::ceil(value / grid)) * grid;
+}
+
+/// Finds the scale at which charts fit.
+class Packing {
+ public:
+  Packing(const LayoutRequest& request, Charting charting)
+      : request_(request), corners_(std::move(charting.corners)), charts_(std::move(charting.charts)) {}
+
+  /// With `fineness` texels a unit, at most `most` texels a side.
+  std::optional<UvLayout> pack(double scale, int fineness, int gutter_texels, int most, int grid) const {
+    UvLayout layout;
+    layout.corners = corners_;
+    layout.charts = charts_;
+    layout.fineness = fineness;
+    layout.scale = scale;
+    layout.gutter = (gutter_texels + fineness - 1) / fineness;
+    std::vector<AtlasBox> boxes;
+    for (AtlasChart& chart : layout.charts) {
+      const double factor = chart.kept ? scale : scale / fineness;
+      std::array<double, 2> lower = {HUGE_VAL, HUGE_VAL};
+      std::array<double, 2> upper = {-HUGE_VAL, -HUGE_VAL};
+      for (const std::uint32_t t : chart.triangles)
+        for (Texel& corner : layout.corners[t])
+          for (std::size_t c = 0; c < 2; ++c) {
+            corner[c] *= factor;
+            lower[c] = std::min(lower[c], corner[c]);
+            upper[c] = std::max(upper[c], corner[c]);
+          }
+      AtlasBox box;
+      for (std::size_t c = 0; c < 2; ++c) {
+        if (!(upper[c] - lower[c] < most) || !(std::abs(lower[c]) < 1e8)) return std::nullopt;
+        const int first = floor_to(lower[c] - layout.gutter, grid);
+        chart.shift[c] = first;
+        (c == 0 ? box.width : box.height) = ceil_to(upper[c] + layout.gutter - first, grid);
+      }
+      boxes.push_back(box);
+    }
+    const auto size = pack_boxes_into(boxes, fineness, most);
+    if (!size) return std::nullopt;
+    layout.size = *size;
+    for (std::size_t i = 0; i < boxes.size(); ++i) {
+      AtlasChart& chart = layout.charts[i];
+      chart.box = {boxes[i].x, boxes[i].y, boxes[i].width, boxes[i].height};
+      chart.shift[0] -= boxes[i].x;
+      chart.shift[1] -= boxes[i].y;
+      for (const std::uint32_t t : chart.triangles)
+        for (Texel& corner : layout.corners[t])
+          for (std::size_t c = 0; c < 2; ++c) corner[c] -= chart.shift[c];
+    }
+    return layout;
+  }
+
+  /// At the old scale. Moved by multiples of many texels, charts keep as many levels of the old mip pyramid:
+  /// of as many as cost little room.
+  std::optional<UvLayout> pack_exactly(int fineness, int gutter, int most) const {
+    constexpr double dearest = 1.5;
+    auto least = pack(1, fineness, gutter, most, request_.grid);
+    if (!least) return std::nullopt;
+    const auto area = [](const UvLayout& layout) { return double{1} * layout.size[0] * layout.size[1]; };
+    for (int grid = best_grid; grid > request_.grid; grid /= 2)
+      if (auto layout = pack(1, fineness, gutter, most, grid))
+        if (area(*layout) <= dearest * area(*least)) return layout;
+    return least;
+  }
+
+  /// The largest scale that fits, below `upper`.
+  std::optional<UvLayout> pack_scaled(double upper, int gutter, int most) const {
+    std::optional<UvLayout> best;
+    double low = 0;
+    double high = upper;
+    double tried = std::min(upper, 1.0);
+    constexpr int halvings = 24;
+    for (int i = 0; i < halvings && high - low > 0.01 * high; ++i) {
+      if (auto layout = pack(tried, 1, gutter, most, 1)) {
+        best = std::move(layout);
+        low = tried;
+      } else {
+        high = tried;
+      }
+      tried = low == 0 ? high / 4 : std::sqrt(low * high);
+    }
+    return best;
+  }
+
+ private:
+  std::optional<std::array<int, 2>> pack_boxes_into(std::vector<AtlasBox>& boxes, int fineness,
+                                                    int most) const {
+    if (request_.created_size == 0) return pack_atlas(boxes, fineness, most);
+    for (const AtlasBox& box : boxes)
+      if (box.width > most) return std::nullopt;
+    if (pack_boxes(boxes, most) > most) return std::nullopt;
+    return std::array<int, 2>{most, most};
+  }
+
+  const LayoutRequest& request_;
+  std::vector<std::array<Texel, 3>> corners_;
+  std::vector<AtlasChart> charts_;
+};
+
+/// The odd number of texels along an old one at which the decals keep their detail.
+int wanted_fineness(const SolvedJob& job, const LayoutRequest& request,
+                    const std::vector<AtlasChart>& charts) {
+  double texels = 0;
+  double pixels = 0;
+  for (const AtlasChart& chart : charts) {
+    if (!chart.kept) continue;
+    for (const std::uint32_t i : chart.triangles) {
+      const SeparatedTriangle& t = request.triangles[i];
+      texels += 0.5 * std::abs(doubled_area(texels_of(job, t, request.texture)));
+      pixels += pixels_on(job, t);
+    }
+  }
+  if (texels == 0 || texels >= fine_enough * fine_enough * pixels) return 1;
+  const auto needed = static_cast<int>(std::ceil(std::sqrt(pixels / texels)));
+  return needed | 1;
+}
+
+std::string no_room(const SolvedJob& job, const LayoutRequest& request) {
+  return fmt::format(
+      "decal '{}': its {} triangles need more texture space of their own than {} x {} texels; give it "
+      "\"uv_conflict\": \"share\", or \"output\": \"overlay\"",
+      job.decals[request.triangles.front().decal].job.name, request.triangles.size(), largest_side,
+      largest_side);
+}
+
+}  // namespace
+
+double pixels_on(const SolvedJob& job, const SeparatedTriangle& t) {
+  return 0.5 * std::abs(doubled_area(image_corners(job, t)));
+}
+
+std::array<Texel, 3> texels_of(const SolvedJob& job, const SeparatedTriangle& t,
+                               const std::array<int, 2>& texture) {
+  const ModelPart& part = job.model.parts[t.part];
+  std::array<Texel, 3> texels = {};
+  for (std::size_t k = 0; k < 3; ++k) {
+    const auto& uv = part.uvs[part.triangles[t.triangle][k]];
+    texels[k] = {uv[0] * texture[0], uv[1] * texture[1]};
+  }
+  return texels;
+}
+
+bool has_texture_space(const SolvedJob& job, const SeparatedTriangle& t, const std::array<int, 2>& texture) {
+  if (texture[0] == 0 || job.model.parts[t.part].uvs.empty()) return false;
+  const auto texels = texels_of(job, t, texture);
+  if (!(std::abs(doubled_area(texels)) > 0)) return false;
+  const auto pixels = image_corners(job, t);
+  return doubled_area(pixels) == 0 || half_axes(map_between(pixels, texels))[1] * coarsest >= 1;
+}
+
+Result<UvLayout> lay_out_uvs(const SolvedJob& job, const LayoutRequest& request) {
+  Charting charting(job, request);
+  charting.run();
+  int fineness = wanted_fineness(job, request, charting.charts);
+  const int full_gutter = std::max(static_cast<int>(job.job.gutter), 1);
+  const Packing packing(request, std::move(charting));
+  if (request.created_size != 0) {
+    for (int gutter = full_gutter; gutter > 0; gutter /= 2)
+      if (auto layout = packing.pack_scaled(1e6, gutter, request.created_size)) return std::move(*layout);
+    return fail(ErrorCode::not_solved, no_room(job, request));
+  }
+  const int most =
+      std::min(std::max({job.job.texture_size, request.texture[0], request.texture[1]}), largest_side);
+  for (; fineness > 1; fineness -= 2)
+    if (auto layout = packing.pack_exactly(fineness, full_gutter, most)) return std::move(*layout);
+  for (int gutter = full_gutter; gutter > 0; gutter /= 2) {
+    if (auto layout = packing.pack_exactly(1, gutter, largest_side)) return std::move(*layout);
+    if (auto layout = packing.pack_scaled(1, gutter, largest_side)) return std::move(*layout);
+  }
+  return fail(ErrorCode::not_solved, no_room(job, request));
+}
+
+}  // namespace applique

@@ -1,0 +1,468 @@
+// Texture coordinates that a decal cannot simply be baked through: shared, mirrored, tiled, collapsed or
+// none.
+
+#include <algorithm>
+#include <cmath>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "binary_edit.h"
+#include "cli/command.h"
+#include "cli/same_look.h"
+#include "cli/small_model.h"
+#include "gltf/test_models.h"
+#include "gltf/validator.h"
+#include "model.h"
+#include "save_document.h"
+#include "schema.h"
+
+namespace applique {
+namespace {
+
+using nlohmann::json;
+
+constexpr int image_size = 64;
+constexpr std::array<std::uint16_t, 4> red = {0xffff, 0, 0, 0xffff};
+
+/// The cube from -1 to 1 whose six faces all show the whole texture.
+SmallMesh make_box() {
+  SmallMesh box;
+  box.name = "Box";
+  const SmallMesh face = make_plane("Face", 8);
+  for (int axis = 0; axis < 3; ++axis)
+    for (const double side : {-1.0, 1.0}) {
+      const auto base = static_cast<std::uint32_t>(box.positions.size());
+      for (const Vec3& place : face.positions) {
+        Vec3 p;
+        p[axis] = side;
+        p[(axis + 1) % 3] = place.x() * side;
+        p[(axis + 2) % 3] = place.y();
+        box.positions.push_back(p);
+      }
+      box.uvs.insert(box.uvs.end(), face.uvs.begin(), face.uvs.end());
+      for (const auto& t : face.triangles) box.triangles.push_back({base + t[0], base + t[1], base + t[2]});
+    }
+  return box;
+}
+
+/// A wall from x = -2 to 2 at z = 0 whose right half mirrors the left one's texture coordinates.
+SmallMesh make_mirrored_wall() {
+  SmallMesh wall = make_plane("Wall", 8);
+  for (std::size_t i = 0; i < wall.positions.size(); ++i) {
+    const double x = wall.positions[i].x();
+    wall.positions[i].x() = 2 * x;
+    wall.uvs[i][0] = 1 - std::abs(x);
+  }
+  return wall;
+}
+
+class UvConflictTest : public testing::Test {
+ protected:
+  void SetUp() override {
+    Image image = make_image(image_size, image_size, red);
+    image.channels = 3;
+    write_png(folder_ / "image.png", image);
+  }
+
+  void write_model(const std::vector<SmallMesh>& meshes, int texture_size = 128) {
+    write_small_model(
+        folder_ / "model.glb", meshes,
+        {{"paint", make_noise(texture_size), {1, 1, 1, 1}}, {"plain", std::nullopt, {0.5, 0.25, 1, 1}}});
+  }
+
+  /// Changes the model's document.
+  template <class Edit>
+  void edit_model(const Edit& edit) {
+    Document document = load_document(folder_ / "model.glb").value();
+    edit(document);
+    ASSERT_TRUE(save_document(document, folder_ / "model.glb"));
+  }
+
+  /// The image, 1 wide, seen from the front at (x, y).
+  static json job_at(double x, double y) {
+    const json ray = {{"origin", {x, y, 20}}, {"direction", {0, 0, -1}}};
+    return {{"version", 1},
+            {"model", "model.glb"},
+            {"texture_size", 256},
+            {"decals", json::array({{{"name", "crest"},
+                                     {"image", "image.png"},
+                                     {"size", 1},
+                                     {"up", {0, 1, 0}},
+                                     {"features", {{{"image", {32, 32}}, {"ray", ray}}}}}})}};
+  }
+
+  /// Bakes, and returns the report.
+  json bake(const json& job, const std::string& output = "out.glb") {
+    folder_.write("job.json", job);
+    const CommandResult result = folder_.run("bake job.json --report report.json -o " + output);
+    EXPECT_EQ(result.status, 0) << result.err;
+    if (result.status != 0) return {};
+    json report = json::parse(folder_.read("report.json"));
+    const auto valid = check_schema(report, report_schema(), "report.json");
+    EXPECT_TRUE(valid) << valid.error().message;
+    return report;
+  }
+
+  Model load(const std::string& name) const { return load_model(folder_ / name).value(); }
+
+  /// With the decal unseen, the model looks as before everywhere; the report has no warnings.
+  void expect_same_look(json job) {
+    job["decals"][0]["opacity"] = 0;
+    const json report = bake(job, "unseen.glb");
+    ASSERT_TRUE(report.is_object());
+    EXPECT_EQ(report["decals"][0]["warnings"], json::array());
+    EXPECT_GT(report["textures"][0]["separated_triangles"], 0);
+    EXPECT_EQ(report["textures"][0]["shared_texels"], 0);
+    const Model before = load("model.glb");
+    const Model after = load("unseen.glb");
+    const LookDifference difference = compare_looks(before, after);
+    std::size_t triangles = 0;
+    for (const ModelPart& part : before.parts) triangles += part.triangles.size();
+    EXPECT_EQ(difference.triangles, triangles);
+    EXPECT_EQ(difference.missing, 0u);
+    EXPECT_LT(difference.largest, 2);
+  }
+
+  /// The most that two pictures differ, in steps of 1/255, of the models seen from an angle.
+  double picture_difference(const std::string& before, const std::string& after, int azimuth) {
+    Image pictures[2];
+    for (int i = 0; i < 2; ++i) {
+      const std::string& name = i == 0 ? before : after;
+      const CommandResult result =
+          folder_.run("render " + name + " -o picture.png --size 400x300 --azimuth " +
+                      std::to_string(azimuth) + " --elevation 0");
+      EXPECT_EQ(result.status, 0) << result.err;
+      pictures[i] = read_image(folder_ / "picture.png").value();
+    }
+    int largest = 0;
+    for (std::size_t i = 0; i < pictures[0].rgba.size(); ++i)
+      largest = std::max(largest, std::abs(int(pictures[0].rgba[i]) - int(pictures[1].rgba[i])));
+    return largest / 257.0;
+  }
+
+  /// Nothing that the validator says of the output is new.
+  void expect_valid(const std::string& output) {
+    const auto counts = validate({folder_ / "model.glb", folder_ / output});
+    if (!counts) return;  // The validator is not installed; CI has it.
+    for (const auto& [code, count] : (*counts)[1])
+      EXPECT_TRUE((*counts)[0].contains(code)) << output << ": " << code;
+  }
+
+  CommandFolder folder_;
+};
+
+bool is_red(const std::array<double, 4>& colour) {
+  return colour[0] > 253 && colour[1] < 2 && colour[2] < 2;
+}
+
+TEST_F(UvConflictTest, OneFaceOfABoxThatSharesItsTexture) {
+  write_model({make_box()});
+  const json job = job_at(0.1, -0.2);
+  expect_same_look(job);
+  const json report = bake(job);
+  const int separated = report["textures"][0]["separated_triangles"];
+  EXPECT_GE(separated, 32) << "half of the face at least";
+  EXPECT_LE(separated, 128) << "no more than the face";
+  EXPECT_EQ(report["textures"][0]["created"], false);
+  const Model after = load("out.glb");
+  EXPECT_TRUE(is_red(colour_near(after, {0.1, -0.2, 1})));
+  EXPECT_TRUE(is_red(colour_near(after, {0.5, 0.2, 1})));
+  EXPECT_FALSE(is_red(colour_near(after, {0.75, -0.2, 1})));
+  EXPECT_GT(picture_difference("model.glb", "out.glb", 0), 50);
+  for (const int azimuth : {90, 180, 270}) EXPECT_LT(picture_difference("model.glb", "out.glb", azimuth), 2);
+  EXPECT_LT(picture_difference("model.glb", "unseen.glb", 0), 2);
+  expect_valid("out.glb");
+}
+
+TEST_F(UvConflictTest, AMirroredHalf) {
+  write_model({make_mirrored_wall()});
+  const json job = job_at(-1, 0);
+  expect_same_look(job);
+  EXPECT_LT(picture_difference("model.glb", "unseen.glb", 0), 2);
+  bake(job);
+  const Model after = load("out.glb");
+  EXPECT_TRUE(is_red(colour_near(after, {-1.1, 0.3, 0})));
+  const auto other = colour_near(after, {1.1, 0.3, 0});
+  const auto before = colour_near(load("model.glb"), {1.1, 0.3, 0});
+  for (std::size_t c = 0; c < 4; ++c) EXPECT_NEAR(other[c], before[c], 1e-9);
+  expect_valid("out.glb");
+}
+
+TEST_F(UvConflictTest, AcrossTheMirror) {
+  write_model({make_mirrored_wall()});
+  const json job = job_at(0, 0);
+  expect_same_look(job);
+  bake(job);
+  const Model after = load("out.glb");
+  for (const double x : {-0.4, -0.1, 0.0, 0.1, 0.4})
+    EXPECT_TRUE(is_red(colour_near(after, {x, 0.2, 0}))) << x;
+  EXPECT_FALSE(is_red(colour_near(after, {0.8, 0.2, 0})));
+}
+
+TEST_F(UvConflictTest, TilesThroughATextureTransform) {
+  write_model({make_plane("Wall", 8)});
+  edit_model([](Document& document) {
+    auto& texture = document.json["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"];
+    texture["extensions"]["KHR_texture_transform"] = {
+        {"scale", {3.5, 2.25}}, {"rotation", 0.3}, {"offset", {0.125, -7.25}}};
+    document.json["extensionsUsed"] = {"KHR_texture_transform"};
+  });
+  const json job = job_at(0.2, 0.1);
+  expect_same_look(job);
+  bake(job);
+  const Model after = load("out.glb");
+  EXPECT_TRUE(is_red(colour_near(after, {0.5, -0.3, 0})));
+  EXPECT_FALSE(is_red(colour_near(after, {-0.5, -0.3, 0})));
+  expect_valid("out.glb");
+}
+
+TEST_F(UvConflictTest, NoTextureCoordinates) {
+  for (const int material : {-1, 0, 1}) {
+    SCOPED_TRACE(material);
+    SmallMesh wall = make_plane("Wall", 8);
+    wall.uvs.clear();
+    wall.material = material;
+    write_model({wall});
+    const json job = job_at(0, 0);
+    if (material != 0)
+      expect_same_look(job);  // A texture without coordinates looks like nothing in particular.
+    const json report = bake(job);
+    EXPECT_EQ(report["decals"][0]["warnings"], json::array());
+    const Model after = load("out.glb");
+    for (const double x : {-0.45, 0.0, 0.45})
+      for (const double y : {-0.45, 0.0, 0.45})
+        EXPECT_TRUE(is_red(colour_near(after, {x, y, 0}))) << x << ", " << y;
+    EXPECT_FALSE(is_red(colour_near(after, {0.6, 0, 0})));
+    if (material != 0) expect_valid("out.glb");
+  }
+}
+
+TEST_F(UvConflictTest, CollapsedTextureCoordinates) {
+  SmallMesh wall = make_plane("Wall", 8);
+  for (auto& uv : wall.uvs) uv = {0.3, 0.6};
+  write_model({wall});
+  const json job = job_at(0, 0);
+  expect_same_look(job);
+  bake(job);
+  const Model after = load("out.glb");
+  EXPECT_TRUE(is_red(colour_near(after, {0.45, 0.45, 0})));
+  EXPECT_FALSE(is_red(colour_near(after, {0.55, 0.45, 0})));
+}
+
+TEST_F(UvConflictTest, AnInstanceOfAMesh) {
+  write_model({make_box()});
+  edit_model([](Document& document) {
+    document.json["nodes"].push_back({{"mesh", 0}, {"translation", {5, 0, 0}}, {"scale", {-1, 1, 1}}});
+    document.json["scenes"][0]["nodes"].push_back(1);
+  });
+  for (const double x : {0.0, 5.0}) {
+    SCOPED_TRACE(x);
+    const json job = job_at(x, 0);
+    expect_same_look(job);
+    bake(job);
+    const Model after = load("out.glb");
+    EXPECT_TRUE(is_red(colour_near(after, {x, 0, 1})));
+    EXPECT_FALSE(is_red(colour_near(after, {5 - x, 0, 1})));
+    expect_valid("out.glb");
+  }
+}
+
+TEST_F(UvConflictTest, TwoDecalsOnOneFaceAndOneOnAnother) {
+  write_model({make_box()});
+  json job = job_at(-0.1, 0.1);
+  job["decals"].push_back(job_at(0.3, -0.2)["decals"][0]);
+  job["decals"].push_back(job["decals"][0]);
+  job["decals"][1]["name"] = "second";
+  job["decals"][2]["name"] = "right";
+  job["decals"][2]["features"][0]["ray"] = {{"origin", {20, 0, 0}}, {"direction", {-1, 0, 0}}};
+  const json report = bake(job);
+  EXPECT_GE(report["textures"][0]["separated_triangles"], 64);
+  EXPECT_LE(report["textures"][0]["separated_triangles"], 256);
+  const Model after = load("out.glb");
+  EXPECT_TRUE(is_red(colour_near(after, {-0.5, 0.5, 1})));
+  EXPECT_TRUE(is_red(colour_near(after, {0.7, -0.6, 1})));
+  EXPECT_TRUE(is_red(colour_near(after, {1, 0.4, 0.4})));
+  EXPECT_FALSE(is_red(colour_near(after, {-1, 0.4, 0.4})));
+}
+
+TEST_F(UvConflictTest, KeepsSkinsAndMorphTargets) {
+  SmallMesh wall = make_plane("Wall", 4);
+  wall.uvs.clear();
+  write_model({wall});
+  const std::size_t count = wall.positions.size();
+  edit_model([&](Document& document) {
+    std::vector<double> joints, weights, offsets, colours;
+    for (std::size_t i = 0; i < count; ++i) {
+      joints.insert(joints.end(), {static_cast<double>(i % 2), 1, 0, 0});
+      weights.insert(weights.end(), {127, 128, 0, 0});
+      offsets.insert(offsets.end(), {0, 0, 0.01 * static_cast<double>(i)});
+      colours.insert(colours.end(), {255, static_cast<double>(i), 7});
+    }
+    auto& root = document.json;
+    const auto add = [&](const char* type, int component, const std::vector<double>& values, int width,
+                         bool normalized, bool bounds) {
+      Document::Json entry = {{"componentType", component}, {"type", type}};
+      if (normalized) entry["normalized"] = true;
+      return add_accessor(document, entry, values, width, bounds, 34962);
+    };
+    Document::Json attributes = root["meshes"][0]["primitives"][0]["attributes"];
+    attributes["JOINTS_0"] = add("VEC4", 5121, joints, 4, false, false);
+    attributes["WEIGHTS_0"] = add("VEC4", 5121, weights, 4, true, false);
+    attributes["COLOR_0"] = add("VEC3", 5121, colours, 3, true, false);
+    const std::size_t target = add("VEC3", 5126, offsets, 3, false, true);
+    auto& primitive = root["meshes"][0]["primitives"][0];
+    primitive["attributes"] = attributes;
+    primitive["targets"] = Document::Json::array({{{"POSITION", target}}});
+    root["meshes"][0]["weights"] = {0.5};
+    root["nodes"].push_back({{"name", "joint"}});
+    root["nodes"].push_back({{"name", "other joint"}, {"translation", {0, 0, 0.5}}});
+    root["nodes"][0]["skin"] = 0;
+    root["skins"] = Document::Json::array({{{"joints", {1, 2}}}});
+    root["scenes"][0]["nodes"] = {0, 1, 2};
+  });
+  const Model before = load("model.glb");
+  bake(job_at(0, 0));
+  const Model after = load("out.glb");
+  ASSERT_EQ(after.parts.size(), 2u);
+  const LookDifference difference = compare_looks(before, after);
+  EXPECT_EQ(difference.missing, 0u) << "skinned and morphed, every triangle is where it was";
+  const auto& primitives = after.document.json["meshes"][0]["primitives"];
+  ASSERT_EQ(primitives.size(), 2u);
+  for (const char* name : {"JOINTS_0", "WEIGHTS_0", "COLOR_0", "POSITION"}) {
+    ASSERT_TRUE(primitives[1]["attributes"].contains(name)) << name;
+    const auto& old_accessor =
+        before.document
+            .json["accessors"]
+                 [before.document.json["meshes"][0]["primitives"][0]["attributes"][name].get<std::size_t>()];
+    const auto& accessor =
+        after.document.json["accessors"][primitives[1]["attributes"][name].get<std::size_t>()];
+    for (const char* key : {"componentType", "type", "normalized"})
+      EXPECT_EQ(accessor.value(key, Document::Json()), old_accessor.value(key, Document::Json())) << name;
+  }
+  EXPECT_EQ(primitives[1]["targets"].size(), 1u);
+  expect_valid("out.glb");
+}
+
+TEST_F(UvConflictTest, ErrorNamesTheDecalTheMaterialAndTheTexels) {
+  write_model({make_box()});
+  json job = job_at(0, 0);
+  job["decals"][0]["uv_conflict"] = "error";
+  folder_.write("job.json", job);
+  const CommandResult result = folder_.run("bake job.json -o out.glb");
+  EXPECT_EQ(result.status, 3);
+  for (const char* part : {"'crest'", "'paint'", "texels", "shown by other triangles", "separate"})
+    EXPECT_NE(result.err.find(part), std::string::npos) << part << "\nin: " << result.err;
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "out.glb"));
+
+  write_model({make_plane("Wall", 8)});
+  EXPECT_EQ(bake(job)["textures"][0]["separated_triangles"], 0) << "nothing is shared there";
+}
+
+TEST_F(UvConflictTest, SharePutsItOnEveryFace) {
+  write_model({make_box()});
+  json job = job_at(0, 0);
+  job["decals"][0]["uv_conflict"] = "share";
+  const json report = bake(job);
+  EXPECT_EQ(report["textures"][0]["separated_triangles"], 0);
+  ASSERT_FALSE(report["decals"][0]["warnings"].empty());
+  EXPECT_EQ(report["decals"][0]["warnings"][0]["code"], "uv_overlap");
+  EXPECT_TRUE(is_red(colour_near(load("out.glb"), {0, 0, -1})));
+}
+
+TEST_F(UvConflictTest, LeavesAModelWithoutConflictAlone) {
+  write_model({make_plane("Wall", 8)});
+  const json report = bake(job_at(0, 0));
+  EXPECT_EQ(report["textures"][0]["separated_triangles"], 0);
+  const Model before = load("model.glb");
+  const Model after = load("out.glb");
+  EXPECT_EQ(after.document.json["meshes"], before.document.json["meshes"]);
+  EXPECT_EQ(after.document.json["accessors"], before.document.json["accessors"]);
+}
+
+/// Every slot of a material, all of one texture size, goes into the atlas.
+TEST_F(UvConflictTest, ResamplesEverySlot) {
+  write_model({make_box()}, 64);
+  edit_model([](Document& document) {
+    auto& material = document.json["materials"][0];
+    material["pbrMetallicRoughness"]["metallicRoughnessTexture"]["index"] = 0;
+    material["normalTexture"] = {{"index", 0}, {"scale", 0.5}};
+    material["occlusionTexture"]["index"] = 0;
+    material["emissiveTexture"]["index"] = 0;
+    material["extensions"]["KHR_materials_clearcoat"]["clearcoatTexture"] = {{"index", 0}};
+    document.json["extensionsUsed"] = {"KHR_materials_clearcoat"};
+  });
+  json job = job_at(0, 0);
+  expect_same_look(job);
+  const Model after = load("unseen.glb");
+  const ModelPart& part = after.parts.back();
+  const auto& material = after.document.json["materials"][*part.material];
+  EXPECT_EQ(material["normalTexture"]["scale"], 0.5);
+  EXPECT_EQ(material["occlusionTexture"]["index"],
+            material["pbrMetallicRoughness"]["metallicRoughnessTexture"]["index"])
+      << "slots that shared a texture still do";
+  const Image old = load_model_image(load("model.glb"), 0).value();
+  for (const auto& slot :
+       {material["pbrMetallicRoughness"]["metallicRoughnessTexture"], material["normalTexture"],
+        material["occlusionTexture"], material["emissiveTexture"],
+        material["extensions"]["KHR_materials_clearcoat"]["clearcoatTexture"]}) {
+    const auto texture = slot["index"].get<std::size_t>();
+    const Image image =
+        load_model_image(after, after.document.json["textures"][texture]["source"].get<std::size_t>())
+            .value();
+    // The middle of the separated face shows the texel right below the middle of the old texture.
+    double u = 0, v = 0;
+    for (std::size_t i = 0; i < part.uvs.size(); ++i)
+      if (part.positions[i] == Vec3(0, 0, 1)) {
+        u = part.uvs[i][0];
+        v = part.uvs[i][1];
+      }
+    const auto x = static_cast<int>(std::lround(u * image.width)),
+               y = static_cast<int>(std::lround(v * image.height));
+    for (int c = 0; c < 3; ++c) EXPECT_EQ(image.pixel(x, y)[c], old.pixel(32, 32)[c]);
+  }
+}
+
+struct RealModel {
+  const char* file;
+  Vec3 origin, direction, up;
+  double size;
+};
+
+/// Third-party models with every kind of conflict: the look stays, the decal comes, the files are valid.
+TEST_F(UvConflictTest, ThirdPartyModels) {
+  if (test_data().empty()) GTEST_SKIP() << no_test_data;
+  for (const RealModel& real :
+       {RealModel{"Duck.glb", {0.5, 1.3, 3}, {0, 0, -1}, {0, 1, 0}, 0.35},
+        RealModel{"BoxTexturedNonPowerOfTwo.glb", {0.1, 0.05, 3}, {0, 0, -1}, {0, 1, 0}, 0.5},
+        RealModel{"RiggedFigure.glb", {0, 1, 3}, {0, 0, -1}, {0, 1, 0}, 0.2},
+        RealModel{"CesiumMilkTruck.glb", {0, 1.8, 6}, {0, 0, -1}, {0, 1, 0}, 1},
+        RealModel{"SheenCloth.glb", {0, 3, 0}, {0, -1, 0}, {0, 0, -1}, 0.01},
+        RealModel{"house.glb", {-0.11, 0.09, 3}, {0, 0, -1}, {0, 1, 0}, 0.01},
+        RealModel{"Box_Draco.glb", {0.1, 0.05, 3}, {0, 0, -1}, {0, 1, 0}, 0.4},
+        RealModel{"AnimatedMorphSphere.glb", {0, 0, 3}, {0, 0, -1}, {0, 1, 0}, 0.3}}) {
+    SCOPED_TRACE(real.file);
+    if (!std::filesystem::exists(test_data() / "gltf" / real.file)) continue;
+    std::filesystem::copy_file(test_data() / "gltf" / real.file, folder_ / "model.glb",
+                               std::filesystem::copy_options::overwrite_existing);
+    std::filesystem::permissions(folder_ / "model.glb", std::filesystem::perms::owner_write,
+                                 std::filesystem::perm_options::add);
+    json job = job_at(0, 0);
+    job.erase("texture_size");
+    const auto list = [](const Vec3& v) { return json{v.x(), v.y(), v.z()}; };
+    job["decals"][0].update({{"size", real.size}, {"up", list(real.up)}});
+    job["decals"][0]["features"][0]["ray"] = {{"origin", list(real.origin)},
+                                              {"direction", list(real.direction)}};
+    expect_same_look(job);
+    const json report = bake(job);
+    ASSERT_TRUE(report.is_object());
+    for (const auto& texture : report["textures"]) EXPECT_EQ(texture["shared_texels"], 0);
+    EXPECT_GE(report["decals"][0]["texel_density"]["texels_per_pixel"], 0.5);
+    const auto position = report["decals"][0]["features"][0]["position"].get<std::array<double, 3>>();
+    EXPECT_TRUE(is_red(colour_near(load("out.glb"), {position[0], position[1], position[2]})));
+    expect_valid("out.glb");
+  }
+}
+
+}  // namespace
+}  // namespace applique
