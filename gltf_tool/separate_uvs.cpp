@@ -62,7 +62,8 @@ Result<std::vector<SeparatedTriangle>> find_conflicts(const SolvedJob& job, cons
   std::map<std::pair<std::uint32_t, std::uint32_t>, SeparatedTriangle> chosen;
   const std::vector<UvState> states = find_uv_states(job, group);
   for (std::size_t d = 0; d < states.size(); ++d) {
-    if (!states[d].conflicts()) continue;
+    // Instances of one mesh show the same texels, and with "all" they are to.
+    if (!states[d].conflicts() || job.decals[d].job.instance == Instance::all) continue;
     switch (job.decals[d].job.uv_conflict) {
       case UvConflict::share:
         break;
