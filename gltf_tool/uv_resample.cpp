@@ -52,11 +52,12 @@ class Sampler {
     const double x = std::floor(at[0] - 0.5);
     const double y = std::floor(at[1] - 0.5);
     Value sum = {};
+    const double right = at[0] - 0.5 - x;
+    const double down = at[1] - 0.5 - y;
     for (int k = 0; k < 4; ++k) {
-      const double right = at[0] - 0.5 - x;
-      const double down = at[1] - 0.5 - y;
-      const double weight = (k % 2 == 1 ? right : 1 - right) * (k / 2 == 1 ? down : 1 - down);
-      const Value texel = value_of(texel_at(x + k % 2, y + k / 2));
+      const int column = k % 2, row = k / 2;
+      const double weight = (column == 1 ? right : 1 - right) * (row == 1 ? down : 1 - down);
+      const Value texel = value_of(texel_at(x + column, y + row));
       for (std::size_t c = 0; c < 4; ++c) sum[c] += weight * texel[c];
     }
     return sum;
@@ -288,8 +289,8 @@ class Filler {
     if (samples == 1) return sampler_(map({x + 0.5, y + 0.5}));
     Value sum = {};
     for (int i = 0; i < samples * samples; ++i) {
-      const Value value =
-          sampler_(map({x + (i % samples + 0.5) / samples, y + (i / samples + 0.5) / samples}));
+      const int column = i % samples, row = i / samples;
+      const Value value = sampler_(map({x + (column + 0.5) / samples, y + (row + 0.5) / samples}));
       for (std::size_t c = 0; c < 4; ++c) sum[c] += value[c] / (samples * samples);
     }
     return sum;

@@ -36,6 +36,10 @@ constexpr int trial_solves = 6;               // after them, groups stay
 constexpr int most_refreshes = 8;             // of the vertices' influence
 constexpr int growing_refreshes = 2;          // of it while the patch is to change
 constexpr double hardly_stretched = 1.1;      // L2, of a map to which there is no need to seek another
+constexpr double much_stretched = 1.1;        // L2
+constexpr double usual_margin = 0.08;         // of a patch's faces
+constexpr double nearly_all = 0.99;           // of the region
+constexpr double little_regard = 0.1;         // for the surface beyond the image
 constexpr double most_coverage = 1.005;       // beyond it a map overlaps itself
 constexpr double refreshed = 1e-5;            // of the region's diameter: what a last refresh moves
 
@@ -115,10 +119,22 @@ bool sounder(const DecalMap& a, const DecalMap& b) {
   return a.quality.l2_stretch < b.quality.l2_stretch;
 }
 
+/// Whether a sound map is much stretched, and there is surface beyond the image that might be instead: more
+/// of the patch than its margin, or what the image has no part of its own for.
+bool may_stretch_elsewhere(const DecalMap& map) {
+  const auto shown =
+      std::count_if(map.textured.begin(), map.textured.end(), [](char shows) { return shows != 0; });
+  const bool beyond =
+      static_cast<double>(shown) < (1 - usual_margin) * static_cast<double>(map.textured.size());
+  return is_sound(map) && map.quality.l2_stretch > much_stretched &&
+         (beyond || map.quality.coverage < nearly_all);
+}
+
 /// What is taken for granted in an attempt at a decal.
 struct Attempt {
   Crossings crossings;  ///< What paths are that cross on the surface.
   bool grouping;        ///< Whether features may move the image in groups.
+  double beyond = 1;    ///< How much the surface beyond the image counts in the last embeddings.
 };
 
 /// One decal in the making: the state that the growth's iterations share.
@@ -189,7 +205,9 @@ class Solver {
       const std::vector<PlacedPoint> guide = options_.guide && groups_.count == 1
                                                  ? placed_features(disc, growth, scale_)
                                                  : std::vector<PlacedPoint>();
-      Embedding embedding = embed_disc(measure_disc(disc), {options.energy, options.rough, guide}, start);
+      const std::vector<double> weights = options.rough ? std::vector<double>() : weights_of(disc);
+      Embedding embedding =
+          embed_disc(measure_disc(disc), {options.energy, options.rough, guide, weights}, start);
       rung_ = embedding.rung;
       plane = std::move(embedding.plane);
       for (std::size_t k = 0; k < features.size(); ++k)
@@ -202,6 +220,19 @@ class Solver {
     for (std::size_t v = 0; v < plane.size(); ++v) points_[PatchVertexId(v)].plane = plane[v];
     warp_points(disc, growth, plane, features);
     return {};
+  }
+
+  /// How much the triangles count: those beyond the image less than others, if the attempt says so.
+  [[nodiscard]] std::vector<double> weights_of(const ImmersedDisc& disc) const {
+    if (attempt_.beyond == 1) return {};
+    std::vector<double> weights;
+    for (const PatchFace& face : disc.faces()) {
+      const auto& v = face.vertices;
+      const bool shown =
+          input_.region.meets_triangle(points_[v[0]].image, points_[v[1]].image, points_[v[2]].image);
+      weights.push_back(shown ? 1 : attempt_.beyond);
+    }
+    return weights;
   }
 
   /// The features in the disc's triangles, and their places in the image at `scale` plane units to one.
@@ -676,6 +707,10 @@ Result<DecalMap> solve_decal(const SurfaceMesh& surface, const DecalInput& input
   if (map && map->groups > 1 && map->sheets == 1 && folds(*map) > 0)
     attempt({Crossings::one_sheet, false},
             [](const DecalMap& a, const DecalMap& b) { return folds(a) < folds(b); });
+  // Where all is much stretched, what the image does not show may be stretched instead.
+  if (map && options.energy != Energy::conformal && may_stretch_elsewhere(*map))
+    attempt({crossed && map->sheets > 1 ? Crossings::overlap : Crossings::one_sheet, true, little_regard},
+            sounder);
   if (options.trace != nullptr) *options.trace = std::move(trace);
   return map;
 }

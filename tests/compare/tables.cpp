@@ -51,7 +51,7 @@ TextTable summary_table(const std::vector<Row>& rows) {
 
 TextTable full_table(const std::vector<Row>& rows) {
   TextTable table{{"surface", "region", "features", "method", "l2", "linf", "angle", "area", "flips",
-                   "residual_px", "coverage", "surface", "seconds", "status"},
+                   "residual_px", "coverage", "surface_area", "seconds", "status"},
                   {}};
   for (const Row& row : rows) {
     std::vector<std::string> cells = {row.name.site, row.name.region, std::to_string(row.name.pins),
@@ -74,7 +74,7 @@ TextTable full_table(const std::vector<Row>& rows) {
 
 TextTable site_table(const std::vector<Row>& rows, const std::string& site) {
   TextTable table{{"region", "features", "method", "L2", "Linf", "angle", "area", "flips", "residual (px)",
-                   "coverage", "surface", "s", "status"},
+                   "coverage", "surface area", "s", "status"},
                   {}};
   for (const Row& row : rows)
     if (row.name.site == site) table.rows.push_back(rounded(row));
@@ -87,7 +87,7 @@ std::vector<std::string> explanations() {
 (engine/applique/quality/map_quality.h). L2 and Linf are the stretch of Sander et al. 2001, normalised so that an
 isometry up to scale has 1; angle and area are the area means of s1/s2 and of max(s1 s2, 1/(s1 s2)); flips are
 faces turned over in the image, which the means leave out; the residual is the largest distance of a feature from
-its pixel in an image of 512 x 512; coverage is the share of the region that lands on the surface; surface is the area there that shows the image, in the
+its pixel in an image of 512 x 512; coverage is the share of the region that lands on the surface; surface area is what shows the image, in the
 model's units squared: a map that shows all of the image on a smaller part of the surface leaves out what bends most. Seconds are the
 solve's, taken while every core is busy: they are printed, not judged.)",
       R"(Features lie where someone would put them who wants the picture undistorted: at the surface points where the

@@ -30,6 +30,7 @@ Embedding descend(const DiscGeometry& disc, const EmbedOptions& options, const s
                   std::span<const PlacedPoint> guide = {}) {
   SymmetricDirichletOptions descent;
   descent.guide = guide;
+  descent.weights = options.weights;
   descent.isometry = options.energy.isometry;
   if (options.rough) descent.tolerance = rough_tolerance;
   Embedding embedding{relax_symmetric_dirichlet(disc, start, descent), EmbeddingRung::isometric, 0};

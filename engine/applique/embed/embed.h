@@ -39,6 +39,7 @@ struct EmbedOptions {
   /// Draws points to targets where `start` says what frame these are in; else, and conformally, without
   /// effect.
   std::span<const PlacedPoint> guide{};
+  std::span<const double> weights{};  ///< By face, how much an isometric map is to care for it; empty: 1.
 };
 
 /// Embeds the disc in the plane with a free boundary (§5.1 of the paper; §4.2 and §4.3 of the design):

@@ -164,7 +164,8 @@ std::vector<Vec2> relax_symmetric_dirichlet(const DiscGeometry& disc, const std:
   constexpr int most_halvings = 12;
   constexpr int most_steps = 10;    // on one Laplacian
   constexpr double outdated = 0.8;  // of the energy at which the Laplacian was weighted
-  const std::vector<RestTriangle> rest = rest_triangles(disc);
+  std::vector<RestTriangle> rest = rest_triangles(disc);
+  for (std::size_t t = 0; t < options.weights.size(); ++t) rest[t].area *= options.weights[t];
   const Guide guide(disc, options.guide);
   const auto energy = [&](const PlanePoints& places, PlanePoints& slope) {
     const double stretch = triangle_energy(disc.faces, rest, places, Distortion{options.isometry}, slope);

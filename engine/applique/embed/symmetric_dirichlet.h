@@ -13,6 +13,7 @@ struct SymmetricDirichletOptions {
   int max_iterations = 100;
   double tolerance = 1e-4;  ///< Stops when two steps in a row lower the energy by less than this share of it.
   std::span<const PlacedPoint> guide{};  ///< Points that are drawn to their targets.
+  std::span<const double> weights{};     ///< By face, > 0: how much its area counts; empty: 1.
 };
 
 /// Minimises the area integral of
