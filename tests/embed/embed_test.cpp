@@ -144,6 +144,37 @@ TEST(SymmetricDirichlet, LeavesAFoldedStartAsItIs) {
   EXPECT_EQ(relax_symmetric_dirichlet(geometry, folded), folded);
 }
 
+TEST(SymmetricDirichlet, KeepsWhatCountsMoreNearerToItsShape) {
+  const Disc bump(shapes::bump(24, 0.8, 0.3));
+  const DiscGeometry geometry = measure_disc(bump.disc);
+  // The left half counts ten times as much.
+  std::vector<double> weights;
+  for (const auto& face : geometry.faces) {
+    double x = 0;
+    for (const int v : face) x += bump.disc.position(PatchVertexId(static_cast<std::uint32_t>(v))).x();
+    weights.push_back(x < 0 ? 1 : 0.1);
+  }
+  const auto error_on_the_left = [&](const std::vector<Vec2>& plane) {
+    double sum = 0;
+    for (std::size_t t = 0; t < geometry.faces.size(); ++t) {
+      if (weights[t] < 1) continue;
+      for (int k = 0; k < 3; ++k)
+        sum +=
+            std::abs(std::abs(plane[geometry.faces[t][(k + 1) % 3]] - plane[geometry.faces[t][(k + 2) % 3]]) /
+                         geometry.lengths[t][k] -
+                     1);
+    }
+    return sum;
+  };
+  const std::vector<Vec2> start = embed_on_circle(geometry);
+  SymmetricDirichletOptions options;
+  const auto evenly = relax_symmetric_dirichlet(geometry, start, options);
+  options.weights = weights;
+  const auto weighted = relax_symmetric_dirichlet(geometry, start, options);
+  EXPECT_EQ(count_flips(geometry, weighted), 0U);
+  EXPECT_LT(error_on_the_left(weighted), 0.8 * error_on_the_left(evenly));
+}
+
 TEST(Embed, EndsAtTheSameMapFromWhereverItStarts) {
   const Disc d(shapes::bump(32, 1.2, 0.3));
   const DiscGeometry geometry = measure_disc(d.disc);
