@@ -19,9 +19,8 @@ constexpr double agreement = 6;            // of a sample's difference against a
 // How far a texel may go. To agree everywhere, two sides whose texels are out of step would have to be smooth
 // along the seam, which smears what crosses it.
 constexpr double most_shown = 3 / 255.0, most_in_gutter = 16 / 255.0;
-constexpr int passes = 2;
-constexpr int rounds = 30;
-constexpr int releases = 15;  // rounds in which held values may come back: later on they would go to and fro
+constexpr int rounds = 6;    // each is a factorisation; what is still at odds then stays within the bounds
+constexpr int releases = 3;  // rounds in which held values may come back: later on they would go to and fro
 
 int wrapped(std::int64_t texel, int size, WrapMode mode) {
   if (mode == WrapMode::clamp) return static_cast<int>(std::clamp<std::int64_t>(texel, 0, size - 1));
@@ -207,11 +206,8 @@ class Channel {
   }
 
   void join() {
-    // The samples' stiffness hangs on the values.
-    for (int pass = 0; pass < passes; ++pass) {
-      assemble();
-      for (int round = 0; round < rounds && solve(round < releases); ++round) {
-      }
+    assemble();
+    for (int round = 0; round < rounds && solve(round < releases); ++round) {
     }
     for (Eigen::Index i = 0; i < value_.size(); ++i) {
       const Place& place = unknowns_.places()[i];
