@@ -67,8 +67,11 @@ void warn_of_overlap(SolvedDecal& decal, const TargetWork& work, const TransferR
   decal.warnings.push_back(
       {"uv_overlap",
        fmt::format("decal '{}': {} texels of '{}' are shown by other surface too, where the decal appears "
-                   "as well; \"uv_conflict\": \"separate\" gives it texture space of its own there",
-                   decal.job.name, result.shared_texels, work.report.material)});
+                   "as well{}",
+                   decal.job.name, result.shared_texels, work.report.material,
+                   decal.job.uv_conflict == UvConflict::separate
+                       ? ""
+                       : "; \"uv_conflict\": \"separate\" gives it texture space of its own there")});
 }
 
 void warn_of_tint(SolvedDecal& decal, const SolvedJob& job, const TargetWork& work) {
@@ -231,9 +234,7 @@ Result<void> transfer_all(SolvedJob& job, std::vector<TargetWork>& works, GpuBak
 
 /// Tells that a texture ("the baseColor texture of 'skin'") is not stored in the wanted format.
 void warn_of_format(BakedJob& baked, const std::string& texture, const EncodedTexture& encoded) {
-  if (encoded.why_png.empty()) return;
-  baked.warnings.push_back(
-      {"texture_is_png", fmt::format("{} is stored as a PNG: {}", texture, encoded.why_png)});
+  if (!encoded.why_png.empty()) baked.warnings.push_back(png_warning(texture, encoded));
 }
 
 Result<void> store_textures(std::vector<TargetWork>& works, const TextureEncoding& encoding,
@@ -300,12 +301,17 @@ Result<BakedJob> bake_job(SolvedJob& job, GpuBaker& baker, const StageCallback& 
     if (on_stage) on_stage(stage, done);
   };
   show("preparing the textures", 0);
-  APPLIQUE_TRY(const auto separated, separate_uvs(job));
+  APPLIQUE_TRY(SeparatedUvs separated, separate_uvs(job, encoding));
+  baked.uv_conflicts = std::move(separated.conflicts);
+  baked.warnings = std::move(separated.warnings);
   baked.times.add("separate_uvs", watch.lap());
   baked.document = job.model.document;
   APPLIQUE_TRY(auto targets, plan_bake(job, baked.document));
   APPLIQUE_CHECK(write_tangents(job.model, targets, baked.document));
   APPLIQUE_TRY(auto works, prepare(job, baked.document, std::move(targets), encoding));
+  for (TargetWork& work : works)
+    if (work.target.material && separated.made.contains({*work.target.material, work.target.slot}))
+      work.report.created = true;
   baked.times.add("load_textures", watch.lap());
   APPLIQUE_CHECK(transfer_all(job, works, baker, baked, show));
   baked.times.add("transfer", watch.lap());
@@ -316,7 +322,7 @@ Result<BakedJob> bake_job(SolvedJob& job, GpuBaker& baker, const StageCallback& 
   baked.times.add("overlay", watch.lap());
   for (TargetWork& work : works) {
     for (const std::uint32_t part : work.target.parts)
-      if (std::binary_search(separated.begin(), separated.end(), part))
+      if (std::binary_search(separated.parts.begin(), separated.parts.end(), part))
         work.report.separated_triangles += job.model.parts[part].triangles.size();
     baked.textures.push_back(work.report);
   }

@@ -28,8 +28,9 @@ Result<std::unique_ptr<GpuBaker>> create_baker(Device device);
 struct BakedJob {  // NOLINT(bugprone-exception-escape): so is Document
   Document document;
   std::vector<TextureReport> textures;
-  std::vector<std::optional<TexelDensity>> densities;  ///< By decal; none for overlays.
-  std::vector<Warning> warnings;                       ///< Of the textures: texture_is_png.
+  std::vector<std::optional<TexelDensity>> densities;       ///< By decal; none for overlays.
+  std::vector<std::vector<UvConflictReport>> uv_conflicts;  ///< By decal.
+  std::vector<Warning> warnings;                            ///< Of the textures: texture_is_png.
   StageTimes times;
 };
 

@@ -79,10 +79,14 @@ std::uint16_t stored(double value) {
   return static_cast<std::uint16_t>(257 * std::lround(255 * std::clamp(value, 0.0, 1.0)));
 }
 
-/// The slot of the target's material as the model has it; of no material at all where the parts had none.
+/// A slot of a material as the model has it; of no material at all where the parts had none.
+MaterialTexture texture_of(const Model& model, std::optional<std::size_t> material, MaterialSlot slot) {
+  if (!material) return {};
+  return read_texture(model.document, model.document.json.at("materials").at(*material), slot);
+}
+
 MaterialTexture texture_of(const Model& model, const BakeTarget& target) {
-  if (!target.material) return {};
-  return read_texture(model.document, model.document.json.at("materials").at(*target.material), target.slot);
+  return texture_of(model, target.material, target.slot);
 }
 
 Result<void> check_uvs(const SolvedJob& job, const BakeTarget& target) {
@@ -94,10 +98,10 @@ Result<void> check_uvs(const SolvedJob& job, const BakeTarget& target) {
     return fail(
         ErrorCode::uvs_missing,
         fmt::format(
-            "decal '{}': mesh {}{}, primitive {}, has no texture coordinates to bake into; give the decal "
-            "\"uv_conflict\": \"separate\", or \"output\": \"overlay\"",
+            "decal '{}': mesh {}{}, primitive {}, has no texture coordinates to bake the {} into; give the "
+            "decal \"output\": \"overlay\"",
             job.decals[target.shares.front().decal].job.name, part.mesh,
-            name.empty() ? "" : fmt::format(" '{}'", name), part.primitive));
+            name.empty() ? "" : fmt::format(" '{}'", name), part.primitive, name_of(target.slot)));
   }
   return {};
 }
@@ -159,12 +163,12 @@ std::array<std::uint16_t, 4> factor_value(const Model& model, const BakeTarget& 
 }
 
 /// Texels of a texture that is made for a slot.
-std::array<int, 2> size_of_new(const SolvedJob& job, const BakeTarget& target) {
-  if (target.slot != MaterialSlot::base_color) {
+std::array<int, 2> size_of_new(const SolvedJob& job, std::optional<std::size_t> material, MaterialSlot slot) {
+  if (slot != MaterialSlot::base_color) {
     if (job.job.resolution) return {*job.job.resolution, *job.job.resolution};
-    const auto base = target.material ? job.model.materials[*target.material].image : std::nullopt;
+    const auto base = material ? job.model.materials[*material].image : std::nullopt;
     if (base)
-      if (const auto image = load_model_image(job.model, *base)) return {image->width, image->height};
+      if (const auto size = document_image_size(job.model.document, *base)) return *size;
   }
   return {job.job.texture_size, job.job.texture_size};
 }
@@ -183,6 +187,14 @@ std::vector<std::array<double, 2>> slot_uvs(const Model& model, const ModelPart&
   return uvs;
 }
 
+Result<std::array<int, 2>> slot_texture_size(const SolvedJob& job, std::optional<std::size_t> material,
+                                             MaterialSlot slot) {
+  const MaterialTexture texture = texture_of(job.model, material, slot);
+  if (!texture.image) return size_of_new(job, material, slot);
+  APPLIQUE_TRY(const auto bytes, read_image_bytes(job.model.document, *texture.image));
+  return image_size(bytes, fmt::format("'{}', image {}", job.model.document.name, *texture.image));
+}
+
 Result<std::vector<BakeTarget>> plan_bake(const SolvedJob& job, Document& document) {
   const std::vector<TouchedPart> touched = find_touched_parts(job);
   std::vector<PartKey> keys;
@@ -195,6 +207,7 @@ Result<std::vector<BakeTarget>> plan_bake(const SolvedJob& job, Document& docume
   struct Ground {
     BakeTarget target;
     std::set<std::size_t> decals;
+    std::map<std::uint32_t, std::set<std::size_t>> decals_by_part;
   };
   std::map<std::size_t, Ground> grounds;  // By material.
   std::size_t i = 0;
@@ -204,6 +217,7 @@ Result<std::vector<BakeTarget>> plan_bake(const SolvedJob& job, Document& docume
     ground.target.material = job.model.parts[index].material;
     ground.target.parts.push_back(index);
     ground.decals.insert(decals.begin(), decals.end());
+    ground.decals_by_part[index] = decals;
   }
   std::vector<BakeTarget> list;
   for (auto& [material, ground] : grounds)
@@ -214,6 +228,13 @@ Result<std::vector<BakeTarget>> plan_bake(const SolvedJob& job, Document& docume
         for (std::size_t layer = 0; layer < job.decals[d].job.layers.size(); ++layer)
           if (job.decals[d].job.layers[layer].slot == slot) target.shares.push_back({d, layer});
       if (target.shares.empty()) continue;
+      // Parts that cannot show the slot are no matter where no decal writes it there.
+      std::erase_if(target.parts, [&](std::uint32_t part) {
+        const auto& decals = ground.decals_by_part.at(part);
+        return slot_uvs(job.model, job.model.parts[part], slot).empty() &&
+               std::none_of(target.shares.begin(), target.shares.end(),
+                            [&](const BakeShare& share) { return decals.contains(share.decal); });
+      });
       APPLIQUE_CHECK(check_uvs(job, target));
       list.push_back(std::move(target));
     }
@@ -227,7 +248,7 @@ bool has_texture(const Model& model, const BakeTarget& target) {
 Result<Image> initial_texture(const SolvedJob& job, const BakeTarget& target) {
   if (const MaterialTexture texture = texture_of(job.model, target); texture.image)
     return load_model_image(job.model, *texture.image);
-  const auto [width, height] = size_of_new(job, target);
+  const auto [width, height] = size_of_new(job, target.material, target.slot);
   const auto value = factor_value(job.model, target);
   Image image = make_image(width, height, value);
   if (value[3] == 65535) image.channels = 3;

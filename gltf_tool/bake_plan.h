@@ -34,6 +34,11 @@ struct BakeTarget {
 /// A part's texture coordinates for a slot, as ModelPart::uvs are those of the base colour; empty: none.
 std::vector<std::array<double, 2>> slot_uvs(const Model& model, const ModelPart& part, MaterialSlot slot);
 
+/// Texels of a slot's texture on a material of the model, without decoding it; of the one that a bake would
+/// make for it. Errors: those of load_model_image, of the image's header.
+Result<std::array<int, 2>> slot_texture_size(const SolvedJob& job, std::optional<std::size_t> material,
+                                             MaterialSlot slot);
+
 /// The textures that the layers of the job's baked decals (not its overlays) need. `document`, a copy of the
 /// model's, gets the isolated materials. Errors: uvs_missing, naming the decal and the mesh, for a touched
 /// part without texture coordinates.

@@ -91,6 +91,14 @@ std::optional<std::uint32_t> part_that_shows(const Model& model, const DecalJob&
   return shown == parts.end() ? std::nullopt : std::optional(*shown);
 }
 
+std::uint32_t part_that_stands_for(const Model& model, const DecalJob& decal, std::uint32_t part) {
+  if (decal.instance != Instance::all) return part;
+  const auto first = std::find_if(model.parts.begin(), model.parts.end(), [&](const ModelPart& other) {
+    return primitive_of(other) == primitive_of(model.parts[part]);
+  });
+  return static_cast<std::uint32_t>(first - model.parts.begin());
+}
+
 bool has_vertex_colours(const SolvedDecal& decal, const Model& model) {
   bool found = false;
   for_textured_sources(decal, [&](const ModelSurface::Source& source) {

@@ -27,6 +27,10 @@ std::vector<TouchedPart> find_touched_parts(const SolvedJob& job);
 std::optional<std::uint32_t> part_that_shows(const Model& model, const DecalJob& decal,
                                              const std::vector<std::uint32_t>& parts, std::uint32_t source);
 
+/// The part that stands for all that a decal changes with `part`: for a decal for all instances, the model's
+/// first part of the same primitive; else the part itself.
+std::uint32_t part_that_stands_for(const Model& model, const DecalJob& decal, std::uint32_t part);
+
 /// Whether vertex colours (COLOR_0) that are not white lie under a decal, and so tint it.
 bool has_vertex_colours(const SolvedDecal& decal, const Model& model);
 

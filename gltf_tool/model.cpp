@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <span>
+#include <string_view>
 #include <unordered_map>
 
 #include <Eigen/Geometry>
@@ -378,6 +380,36 @@ Result<Image> load_model_image(const Model& model, std::size_t image) {
 Result<Image> load_document_image(const Document& document, std::size_t image) {
   APPLIQUE_TRY(const auto bytes, read_image_bytes(document, image));
   return decode_image(bytes, fmt::format("'{}', image {}", document.name, image));
+}
+
+namespace {
+
+/// The size that a KTX2 or DDS says it has: two numbers in its header.
+std::optional<std::array<int, 2>> container_size(std::span<const std::uint8_t> bytes) {
+  constexpr std::uint32_t largest = 1 << 16;
+  const auto begins = [&](std::string_view magic) {
+    return bytes.size() >= 28 &&
+           std::equal(magic.begin(), magic.end(), bytes.begin(),
+                      [](char a, std::uint8_t b) { return static_cast<std::uint8_t>(a) == b; });
+  };
+  const auto number = [&](std::size_t at) {
+    std::uint32_t value = 0;
+    for (std::size_t i = 4; i-- > 0;) value = value << 8 | bytes[at + i];
+    return value;
+  };
+  std::array<std::uint32_t, 2> size = {0, 0};
+  if (begins("\xabKTX 20\xbb")) size = {number(20), number(24)};
+  if (begins("DDS ")) size = {number(16), number(12)};
+  if (size[0] < 1 || size[1] < 1 || std::max(size[0], size[1]) > largest) return std::nullopt;
+  return std::array{static_cast<int>(size[0]), static_cast<int>(size[1])};
+}
+
+}  // namespace
+
+Result<std::array<int, 2>> document_image_size(const Document& document, std::size_t image) {
+  APPLIQUE_TRY(const auto bytes, read_image_bytes(document, image));
+  if (const auto size = container_size(bytes)) return *size;
+  return image_size(bytes, fmt::format("'{}', image {}", document.name, image));
 }
 
 ModelSurface build_surface(const Model& model, const std::vector<std::size_t>& nodes,

@@ -89,6 +89,10 @@ Result<Image> load_model_image(const Model& model, std::size_t image);
 /// The same for a document that is not decoded as a model.
 Result<Image> load_document_image(const Document& document, std::size_t image);
 
+/// Width and height of an image of the document, without its pixels; also where these cannot be decoded
+/// (KTX2, DDS). Errors: as load_model_image's, of the image's header.
+Result<std::array<int, 2>> document_image_size(const Document& document, std::size_t image);
+
 /// The surface that a decal may use: parts welded together, and where each surface face came from.
 struct ModelSurface {
   SurfaceMesh mesh;

@@ -102,7 +102,23 @@ Json decal_seconds(const SolvedDecal& decal) {
   return seconds_of(times, total);
 }
 
-Json decal_of(const SolvedDecal& decal, const std::optional<TexelDensity>& density) {
+Json uv_conflicts_of(const std::vector<UvConflictReport>& conflicts) {
+  Json list = Json::array();
+  for (const UvConflictReport& conflict : conflicts)
+    list.push_back({{"material", conflict.material ? Json(*conflict.material) : Json(nullptr)},
+                    {"slots", conflict.slots},
+                    {"reason", conflict.reason},
+                    {"outcome", conflict.outcome},
+                    {"triangles", conflict.triangles},
+                    {"triangles_in_conflict", conflict.in_conflict},
+                    {"covered_texels", conflict.covered_texels},
+                    {"shared_texels", conflict.shared_texels},
+                    {"message", conflict.message}});
+  return list;
+}
+
+Json decal_of(const SolvedDecal& decal, const std::optional<TexelDensity>& density,
+              const std::vector<UvConflictReport>& conflicts) {
   const DecalMap& map = decal.map;
   const MapQuality& quality = map.quality;
   std::size_t textured = 0;
@@ -128,6 +144,7 @@ Json decal_of(const SolvedDecal& decal, const std::optional<TexelDensity>& densi
   out["distortion"] = {{"angle", finite(quality.angle_distortion)},
                        {"area", finite(quality.area_distortion)}};
   out["suggestions"] = suggestions_of(decal);
+  out["uv_conflicts"] = uv_conflicts_of(conflicts);
   out["texel_density"] = nullptr;
   if (density)
     out["texel_density"] = {{"texels_per_unit", density->texels_per_unit},
@@ -183,7 +200,8 @@ Json make_report(const SolvedJob& job, const ReportInput& input) {
   report["decals"] = Json::array();
   for (std::size_t i = 0; i < job.decals.size(); ++i)
     report["decals"].push_back(
-        decal_of(job.decals[i], i < input.densities.size() ? input.densities[i] : std::nullopt));
+        decal_of(job.decals[i], i < input.densities.size() ? input.densities[i] : std::nullopt,
+                 i < input.uv_conflicts.size() ? input.uv_conflicts[i] : std::vector<UvConflictReport>()));
   return report;
 }
 

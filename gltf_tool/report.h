@@ -25,6 +25,19 @@ struct TextureReport {
   std::uint64_t shared_texels = 0;
 };
 
+/// Texture coordinates under a decal through which it cannot simply be baked.
+struct UvConflictReport {
+  std::optional<std::string> material;  ///< Name; none: the triangles have no material.
+  std::vector<std::string> slots;       ///< That the decal writes and that are in conflict: "baseColor", …
+  std::string reason;                   ///< "missing", "shared" or "coarse".
+  std::string outcome;                  ///< "separate", "share" or "error".
+  std::uint64_t triangles = 0;          ///< Of the decal on the material.
+  std::uint64_t in_conflict = 0;        ///< Of them.
+  std::uint64_t covered_texels = 0;
+  std::uint64_t shared_texels = 0;
+  std::string message;  ///< All this as a sentence.
+};
+
 /// How finely the textures under a decal resolve it, along a line.
 struct TexelDensity {
   double texels_per_unit = 0;   ///< Texels a scene unit.
@@ -41,8 +54,9 @@ struct ReportInput {
   StageTimes times;  ///< Of the whole run.
   double total_seconds = 0;
   std::vector<TextureReport> textures;
-  std::vector<std::optional<TexelDensity>> densities;  ///< By decal; may be empty.
-  std::vector<Warning> warnings;                       ///< Beyond the model's.
+  std::vector<std::optional<TexelDensity>> densities;       ///< By decal; may be empty.
+  std::vector<std::vector<UvConflictReport>> uv_conflicts;  ///< By decal; may be empty.
+  std::vector<Warning> warnings;                            ///< Beyond the model's.
 };
 
 /// A feature as a job file takes it: {"image": [x, y], "position": [x, y, z]}, with "depth" unless it is 0.

@@ -12,12 +12,15 @@
 #include <fmt/format.h>
 #include <tiny_gltf.h>
 
+#include "bake_plan.h"
 #include "binary_edit.h"
 #include "edit.h"
 #include "geometry.h"
+#include "instances.h"
 #include "move_triangles.h"
 #include "tangent_turns.h"
 #include "texel_map.h"
+#include "texture_encoding.h"
 #include "texture_slots.h"
 #include "uv_conflict.h"
 #include "uv_layout.h"
@@ -33,46 +36,18 @@ using Json = Document::Json;
 struct PartMove {
   std::vector<std::uint32_t> triangles;  ///< In their new order.
   std::size_t primitive = 0;
+  bool every_node = false;  ///< So did those of all other nodes that show the mesh.
 };
 
-std::string material_name(const Model& model, std::optional<std::size_t> material) {
-  if (!material) return "no material";
-  const std::string& name = model.materials[*material].name;
-  return name.empty() ? fmt::format("material {}", *material) : fmt::format("'{}'", name);
-}
-
-Result<void> refuse(const SolvedJob& job, std::size_t decal, const TextureGroup& group,
-                    const UvState& state) {
-  const std::string reason =
-      state.without_uvs ? fmt::format("{} has triangles without texture coordinates",
-                                      material_name(job.model, group.material))
-      : state.shared_texels > 0
-          ? fmt::format("{} of its {} texels of {} are shown by other triangles too", state.shared_texels,
-                        state.covered_texels, material_name(job.model, group.material))
-          : fmt::format("the texture coordinates of {} are too coarse for it",
-                        material_name(job.model, group.material));
-  return fail(state.without_uvs ? ErrorCode::uvs_missing : ErrorCode::uvs_shared,
-              fmt::format("decal '{}': {}; with \"uv_conflict\": \"separate\" it gets texture space of its "
-                          "own, with \"share\" it appears there as well",
-                          job.decals[decal].job.name, reason));
-}
-
-/// The triangles of a group that are to be separated, each once.
-Result<std::vector<SeparatedTriangle>> find_conflicts(const SolvedJob& job, const TextureGroup& group) {
+/// The triangles of a group that are to be separated, each once in its mesh.
+std::vector<SeparatedTriangle> triangles_to_separate(const SolvedJob& job,
+                                                     const std::vector<UvFinding>& findings) {
   std::map<std::pair<std::uint32_t, std::uint32_t>, SeparatedTriangle> chosen;
-  const std::vector<UvState> states = find_uv_states(job, group);
-  for (std::size_t d = 0; d < states.size(); ++d) {
-    // Instances of one mesh show the same texels, and with "all" they are to.
-    if (!states[d].conflicts() || job.decals[d].job.instance == Instance::all) continue;
-    switch (job.decals[d].job.uv_conflict) {
-      case UvConflict::share:
-        break;
-      case UvConflict::error:
-        APPLIQUE_CHECK(refuse(job, d, group, states[d]));
-        break;
-      case UvConflict::separate:
-        for (const SeparatedTriangle& t : states[d].triangles) chosen.try_emplace({t.part, t.triangle}, t);
-    }
+  for (const UvFinding& finding : findings) {
+    if (finding.outcome != UvConflict::separate) continue;
+    const DecalJob& decal = job.decals[finding.decal].job;
+    for (const SeparatedTriangle& t : finding.triangles)
+      chosen.try_emplace({part_that_stands_for(job.model, decal, t.part), t.triangle}, t);
   }
   std::vector<SeparatedTriangle> list;
   for (const auto& [key, t] : chosen) list.push_back(t);
@@ -82,7 +57,8 @@ Result<std::vector<SeparatedTriangle>> find_conflicts(const SolvedJob& job, cons
 /// Edits the document for the groups of a job, one after the other.
 class Separation {
  public:
-  explicit Separation(SolvedJob& job) : job_(job), document_(job.model.document) {}
+  Separation(SolvedJob& job, const TextureEncoding& encoding)
+      : job_(job), encoding_(encoding), document_(job.model.document) {}
 
   Result<void> separate(const TextureGroup& group, std::vector<SeparatedTriangle> triangles) {
     if (!geometry_) {
@@ -94,15 +70,16 @@ class Separation {
     request.texture = group.texture;
     if (!group.has_texture) request.created_size = job_.job.texture_size;
     const std::size_t material = isolate(group, request);
-    std::vector<TextureSlots> slots = find_texture_slots(document_.json["materials"][material]);
+    const std::set<MaterialSlot> written = slots_written(request);
+    const std::vector<BakedSlots> slots = find_slots(material, written);
     APPLIQUE_TRY(std::vector<Image> images, load_slots(slots, request));
     request.grid = grid_for(request, images);
     APPLIQUE_TRY(const UvLayout layout, lay_out_uvs(job_, request));
     warn_of_scale(group, request, layout);
-    const std::size_t set = uv_set(group, request, slots, images);
+    const std::size_t set = uv_set(request, images);
     std::vector<OldCorners> corners;
     for (std::size_t s = 0; s < slots.size(); ++s) {
-      APPLIQUE_TRY(auto old, old_corners(slots[s], images[s], request));
+      APPLIQUE_TRY(auto old, old_corners(slots[s].mapping, images[s], request));
       corners.push_back(std::move(old));
     }
     Tangents tangents;
@@ -116,11 +93,12 @@ class Separation {
       APPLIQUE_CHECK(resample(slots[s], images[s], group, request, layout, material, set,
                               std::move(corners[s]), std::move(turns)));
     }
+    if (set != 0 && !group.has_texture) APPLIQUE_CHECK(make_textures(group, written, material, set));
     return move(request, layout, material, set, tangents);
   }
 
   /// Replaces the job's model, and returns the parts that are new.
-  Result<std::vector<std::uint32_t>> finish() {
+  Result<SeparatedUvs> finish() {
     clean_up();
     const std::vector<ModelPart> old_parts = std::move(job_.model.parts);
     APPLIQUE_TRY(job_.model, decode_model(std::move(document_)));
@@ -128,11 +106,11 @@ class Separation {
     for (std::uint32_t p = 0; p < job_.model.parts.size(); ++p)
       index[{job_.model.parts[p].node, job_.model.parts[p].primitive}] = p;
     follow(old_parts, index);
-    std::vector<std::uint32_t> separated;
-    for (const auto& [part, move] : moves_)
-      separated.push_back(index.at({old_parts[part].node, move.primitive}));
-    std::sort(separated.begin(), separated.end());
-    return separated;
+    for (std::uint32_t p = 0; p < old_parts.size(); ++p)
+      if (const PartMove* move = move_of(old_parts, p))
+        done_.parts.push_back(index.at({old_parts[p].node, move->primitive}));
+    std::sort(done_.parts.begin(), done_.parts.end());
+    return std::move(done_);
   }
 
  private:
@@ -140,17 +118,33 @@ class Separation {
   /// By triangle of the request and corner; without an entry where a part has no normals. Empty: they stay.
   using Tangents = std::map<std::pair<std::uint32_t, std::uint32_t>, std::array<std::array<float, 4>, 3>>;
 
+  [[nodiscard]] std::uint32_t standing_for(const SeparatedTriangle& t) const {
+    return part_that_stands_for(job_.model, job_.decals[t.decal].job, t.part);
+  }
+
+  [[nodiscard]] bool is_on_every_node(const SeparatedTriangle& t) const {
+    return job_.decals[t.decal].job.instance == Instance::all;
+  }
+
   /// A material for the triangles: what the rest of the parts shows stays as it was.
   std::size_t isolate(const TextureGroup& group, const LayoutRequest& request) {
-    std::map<std::uint32_t, std::size_t> taken;
-    for (const SeparatedTriangle& t : request.triangles) ++taken[t.part];
+    struct Taken {
+      std::size_t count = 0;
+      bool every_node = false;
+    };
+    std::map<std::uint32_t, Taken> taken;
+    for (const SeparatedTriangle& t : request.triangles) {
+      Taken& part = taken[standing_for(t)];
+      ++part.count;
+      part.every_node = is_on_every_node(t);
+    }
     std::vector<PartKey> keys;
     bool rest = false;
-    for (const auto& [p, count] : taken) {
+    for (const auto& [p, part_taken] : taken) {
       const ModelPart& part = job_.model.parts[p];
-      keys.push_back(
-          {part.node, document_.json["nodes"][part.node]["mesh"].get<std::size_t>(), part.primitive});
-      rest = rest || count < part.triangles.size();
+      keys.push_back({part.node, document_.json["nodes"][part.node]["mesh"].get<std::size_t>(),
+                      part.primitive, part_taken.every_node});
+      rest = rest || part_taken.count < part.triangles.size();
     }
     std::size_t material = isolate_materials(document_, keys).front();
     if (rest && group.material == material) {
@@ -161,15 +155,48 @@ class Separation {
     return material;
   }
 
-  /// The slots' images; empty where one cannot be read, with a warning, unless it is the base colour's.
-  Result<std::vector<Image>> load_slots(const std::vector<TextureSlots>& slots,
-                                        const LayoutRequest& request) {
+  /// What the decals over the triangles write.
+  [[nodiscard]] std::set<MaterialSlot> slots_written(const LayoutRequest& request) const {
+    std::set<MaterialSlot> written;
+    for (const SeparatedTriangle& t : request.triangles)
+      for (const DecalLayer& layer : job_.decals[t.decal].job.layers) written.insert(layer.slot);
+    return written;
+  }
+
+  /// Slots that show one texture, all of which a bake goes on to write, or none.
+  struct BakedSlots : TextureSlots {
+    bool baked = false;
+  };
+
+  [[nodiscard]] std::vector<BakedSlots> find_slots(std::size_t material,
+                                                   const std::set<MaterialSlot>& written) const {
+    std::vector<SlotPointer> baked;
+    for (const MaterialSlot slot : written) baked.push_back(pointer_to(slot));
+    std::vector<BakedSlots> list;
+    for (TextureSlots& slots : find_texture_slots(document_.json["materials"][material])) {
+      const auto rest =
+          std::stable_partition(slots.slots.begin(), slots.slots.end(), [&](const SlotPointer& pointer) {
+            return std::find(baked.begin(), baked.end(), pointer) != baked.end();
+          });
+      for (const auto& [first, last] : {std::pair(slots.slots.begin(), rest), {rest, slots.slots.end()}}) {
+        if (first == last) continue;
+        BakedSlots part{slots, first == slots.slots.begin() && rest != slots.slots.begin()};
+        part.slots.assign(first, last);
+        part.name = part.slots.front().back();
+        list.push_back(std::move(part));
+      }
+    }
+    return list;
+  }
+
+  /// The slots' images; empty where one cannot be read, with a warning, unless a decal is baked into it.
+  Result<std::vector<Image>> load_slots(const std::vector<BakedSlots>& slots, const LayoutRequest& request) {
     std::vector<Image> images;
-    for (const TextureSlots& slot : slots) {
+    for (const BakedSlots& slot : slots) {
       const auto index = image_of_texture(document_.json["textures"][slot.texture]);
       auto image = index ? load_document_image(document_, *index) : Result<Image>(Image());
       if (!image) {
-        if (slot.name == "baseColorTexture") return fail(image.error().code, image.error().message);
+        if (slot.baked) return fail(image.error().code, image.error().message);
         SolvedDecal& decal = job_.decals[request.triangles.front().decal];
         decal.warnings.push_back(
             {"uv_slot_not_resampled",
@@ -200,14 +227,13 @@ class Separation {
         {"uv_atlas_coarser",
          fmt::format("decal '{}': the texture of {} repeats so often under it that its own space there has "
                      "{:.2g} times the texels along a line",
-                     decal.job.name, material_name(job_.model, group.material), layout.scale)});
+                     decal.job.name, quoted_name(job_.model, group.material), layout.scale)});
   }
 
   /// The TEXCOORD for the new coordinates: 0, unless something goes on to use the old ones.
-  std::size_t uv_set(const TextureGroup& group, const LayoutRequest& request,
-                     const std::vector<TextureSlots>& slots, const std::vector<Image>& images) {
-    bool used = false;
-    for (std::size_t s = 0; s < slots.size(); ++s) used = used || images[s].rgba.empty();
+  std::size_t uv_set(const LayoutRequest& request, const std::vector<Image>& images) {
+    bool used =
+        std::any_of(images.begin(), images.end(), [](const Image& image) { return image.rgba.empty(); });
     std::size_t sets = 0;
     for (const SeparatedTriangle& t : request.triangles) {
       const ModelPart& part = job_.model.parts[t.part];
@@ -219,12 +245,28 @@ class Separation {
       while (primitive["attributes"].contains(fmt::format("TEXCOORD_{}", count))) ++count;
       sets = std::max(sets, count);
     }
-    // A base-colour texture that the bake makes is shown through the first set.
-    return used && group.has_texture ? sets : 0;
+    return used ? sets : 0;
+  }
+
+  /// The textures that a bake would make for the slots, which it would show through the first set.
+  Result<void> make_textures(const TextureGroup& group, const std::set<MaterialSlot>& written,
+                             std::size_t material, std::size_t set) {
+    for (const MaterialSlot slot : written) {
+      if (find_texture_info(document_.json["materials"][material], slot) != nullptr) continue;
+      BakeTarget target;
+      target.slot = slot;
+      target.material = group.material;
+      APPLIQUE_TRY(const Image image, initial_texture(job_, target));
+      APPLIQUE_TRY(const auto png, encode_png(image));
+      set_slot_image(document_, material, slot, png);
+      show_whole(material, pointer_to(slot), set);
+      done_.made.insert({material, slot});
+    }
+    return {};
   }
 
   /// Whether directions in some texture would mean something else in the layout.
-  static bool turns_frames(const std::vector<TextureSlots>& slots, const std::vector<Image>& images,
+  static bool turns_frames(const std::vector<BakedSlots>& slots, const std::vector<Image>& images,
                            const std::vector<OldCorners>& corners, const UvLayout& layout) {
     for (std::size_t s = 0; s < slots.size(); ++s)
       if (slots[s].content == TexelContent::normal && !images[s].rgba.empty() &&
@@ -295,7 +337,7 @@ class Separation {
       for (auto& corner : *corners) std::swap(corner[1], corner[2]);
   }
 
-  Result<std::vector<std::array<Texel, 3>>> old_corners(const TextureSlots& slot, const Image& image,
+  Result<std::vector<std::array<Texel, 3>>> old_corners(const UvMapping& mapping, const Image& image,
                                                         const LayoutRequest& request) {
     std::map<std::uint32_t, std::vector<double>> uvs;
     std::vector<std::array<Texel, 3>> list;
@@ -304,7 +346,7 @@ class Separation {
       const auto [values, fresh] = uvs.try_emplace(t.part);
       if (fresh) {
         const auto& entry = geometry_->meshes[part.mesh].primitives[part.primitive];
-        const auto attribute = entry.attributes.find(fmt::format("TEXCOORD_{}", slot.mapping.set));
+        const auto attribute = entry.attributes.find(fmt::format("TEXCOORD_{}", mapping.set));
         if (attribute != entry.attributes.end()) {
           APPLIQUE_TRY(values->second, read_accessor(*geometry_, attribute->second, 2,
                                                      fmt::format("mesh {}, primitive {}, {}", part.mesh,
@@ -316,7 +358,7 @@ class Separation {
       std::array<Texel, 3> corners = {};
       for (std::size_t k = 0; k < 3; ++k) {
         const std::size_t vertex = part.triangles[t.triangle][k];
-        const auto uv = slot.mapping.apply({values->second[2 * vertex], values->second[2 * vertex + 1]});
+        const auto uv = mapping.apply({values->second[2 * vertex], values->second[2 * vertex + 1]});
         corners[k] = {uv[0] * image.width, uv[1] * image.height};
       }
       list.push_back(corners);
@@ -324,7 +366,7 @@ class Separation {
     return list;
   }
 
-  Result<void> resample(const TextureSlots& slot, const Image& image, const TextureGroup& group,
+  Result<void> resample(const BakedSlots& slot, const Image& image, const TextureGroup& group,
                         const LayoutRequest& request, const UvLayout& layout, std::size_t material,
                         std::size_t set, OldCorners corners, std::vector<std::array<FrameTurn, 3>> turns) {
     Resampling resampling;
@@ -346,9 +388,16 @@ class Separation {
       resampling.reference = {static_cast<double>(request.texture[0]) / image.width,
                               static_cast<double>(request.texture[1]) / image.height};
     resampling.size = is_base ? layout.size : slot_size(resampling, layout);
-    APPLIQUE_TRY(const auto png, encode_png(resample_texture(resampling)));
+    resampling.bits = working_bits(encoding_, image.bits);
+    const Image resampled = resample_texture(resampling);
+    // What a decal is baked into is stored as it is to be after that.
+    APPLIQUE_TRY(const EncodedTexture encoded,
+                 encode_texture(resampled, slot.baked ? TextureEncoding() : encoding_));
+    if (!encoded.why_png.empty())
+      done_.warnings.push_back(png_warning(
+          fmt::format("the {} of {}", slot.name, quoted_name(job_.model, group.material)), encoded));
     for (const SlotPointer& pointer : slot.slots) show_whole(material, pointer, set);
-    set_slot_images(document_, material, slot.slots, png, slot.name);
+    set_slot_images(document_, material, slot.slots, encoded.bytes, slot.name);
     clamp(document_.json["materials"][material][slot.slots.front()]["index"].get<std::size_t>());
     return {};
   }
@@ -413,9 +462,12 @@ class Separation {
   Result<void> move(const LayoutRequest& request, const UvLayout& layout, std::size_t material,
                     std::size_t set, const Tangents& tangents) {
     std::map<std::uint32_t, MovedTriangles> parts;
+    std::set<std::uint32_t> every_node;
     for (std::size_t i = 0; i < request.triangles.size(); ++i) {
       const SeparatedTriangle& t = request.triangles[i];
-      MovedTriangles& moved = parts[t.part];
+      const std::uint32_t p = standing_for(t);
+      if (is_on_every_node(t)) every_node.insert(p);
+      MovedTriangles& moved = parts[p];
       moved.triangles.push_back(t.triangle);
       std::array<std::array<float, 2>, 3> uvs = {};
       for (std::size_t k = 0; k < 3; ++k) {
@@ -425,6 +477,9 @@ class Separation {
       moved.uvs.push_back(uvs);
       if (const auto turned = tangents.find({t.part, t.triangle}); turned != tangents.end())
         moved.tangents.push_back(turned->second);
+      if (job_.model.parts[t.part].mirrored == job_.model.parts[p].mirrored) continue;
+      std::swap(moved.uvs.back()[1], moved.uvs.back()[2]);
+      if (!moved.tangents.empty()) std::swap(moved.tangents.back()[1], moved.tangents.back()[2]);
     }
     for (auto& [p, moved] : parts) {
       const ModelPart& part = job_.model.parts[p];
@@ -439,7 +494,7 @@ class Separation {
       if (const auto* draco = find(old, {"extensions", "KHR_draco_mesh_compression"}))
         if (const auto view = index_of(*draco, "bufferView")) old_views_.insert(*view);
       APPLIQUE_TRY(const std::size_t primitive, move_triangles(document_, job_.model, *geometry_, moved));
-      moves_[p] = {std::move(moved.triangles), primitive};
+      moves_[p] = {std::move(moved.triangles), primitive, every_node.contains(p)};
     }
     return {};
   }
@@ -457,19 +512,29 @@ class Separation {
     }
   }
 
+  /// What became of a part; null if nothing did.
+  [[nodiscard]] const PartMove* move_of(const std::vector<ModelPart>& parts, std::uint32_t p) const {
+    if (const auto own = moves_.find(p); own != moves_.end()) return &own->second;
+    for (const auto& [other, move] : moves_)
+      if (move.every_node && parts[other].mesh == parts[p].mesh &&
+          parts[other].primitive == parts[p].primitive)
+        return &move;
+    return nullptr;
+  }
+
   /// Leads the sources of the decals' surfaces to the new parts.
   void follow(const std::vector<ModelPart>& old_parts,
               const std::map<std::pair<std::size_t, std::size_t>, std::uint32_t>& index) {
     std::vector<std::vector<ModelSurface::Source>> places(old_parts.size());
     for (std::uint32_t p = 0; p < old_parts.size(); ++p) {
       const ModelPart& part = old_parts[p];
-      const auto move = moves_.find(p);
+      const PartMove* move = move_of(old_parts, p);
       std::vector<std::uint32_t> rank(part.triangles.size(), ~0U);
-      if (move != moves_.end())
-        for (std::uint32_t i = 0; i < move->second.triangles.size(); ++i) rank[move->second.triangles[i]] = i;
+      if (move != nullptr)
+        for (std::uint32_t i = 0; i < move->triangles.size(); ++i) rank[move->triangles[i]] = i;
       std::uint32_t kept = 0;
       for (const std::uint32_t moved : rank) {
-        const std::size_t primitive = moved == ~0U ? part.primitive : move->second.primitive;
+        const std::size_t primitive = moved == ~0U ? part.primitive : move->primitive;
         places[p].push_back({index.at({part.node, primitive}), moved == ~0U ? kept++ : moved});
       }
     }
@@ -486,7 +551,9 @@ class Separation {
   }
 
   SolvedJob& job_;
+  const TextureEncoding& encoding_;
   Document document_;
+  SeparatedUvs done_;
   std::optional<tinygltf::Model> geometry_;
   std::map<std::uint32_t, PartMove> moves_;  ///< By old part.
   std::vector<std::size_t> old_accessors_;   ///< Of the primitives that changed.
@@ -495,17 +562,27 @@ class Separation {
 
 }  // namespace
 
-Result<std::vector<std::uint32_t>> separate_uvs(SolvedJob& job) {
-  APPLIQUE_TRY(const auto groups, find_texture_groups(job));
+Result<SeparatedUvs> separate_uvs(SolvedJob& job, const TextureEncoding& encoding) {
+  APPLIQUE_TRY(const auto groups, find_uv_conflicts(job));
+  std::vector<std::vector<UvConflictReport>> conflicts(job.decals.size());
+  for (const auto& [group, findings] : groups)
+    for (const UvFinding& finding : findings) {
+      if (finding.outcome == UvConflict::error) return tl::unexpected<Error>(error_of(job, group, finding));
+      conflicts[finding.decal].push_back(report_of(job, group, finding));
+    }
+  SeparatedUvs separated;
   std::optional<Separation> separation;
-  for (const TextureGroup& group : groups) {
-    APPLIQUE_TRY(auto triangles, find_conflicts(job, group));
+  for (const auto& [group, findings] : groups) {
+    auto triangles = triangles_to_separate(job, findings);
     if (triangles.empty()) continue;
-    if (!separation) separation.emplace(job);
+    if (!separation) separation.emplace(job, encoding);
     APPLIQUE_CHECK(separation->separate(group, std::move(triangles)));
   }
-  if (!separation) return std::vector<std::uint32_t>();
-  return separation->finish();
+  if (separation) {
+    APPLIQUE_TRY(separated, separation->finish());
+  }
+  separated.conflicts = std::move(conflicts);
+  return separated;
 }
 
 }  // namespace applique

@@ -1,27 +1,42 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <set>
+#include <utility>
 #include <vector>
 
 #include "applique/base/error.h"
 
+#include "material.h"
+#include "report.h"
 #include "solve_job.h"
+#include "texture_encoding.h"
 
 namespace applique {
 
+/// What separate_uvs found and did.
+struct SeparatedUvs {
+  std::vector<std::uint32_t> parts;  ///< Of the new model, those of separated triangles, ascending.
+  std::vector<std::vector<UvConflictReport>> conflicts;  ///< By decal.
+  std::set<std::pair<std::size_t, MaterialSlot>> made;   ///< Textures that their materials did not have.
+  std::vector<Warning> warnings;                         ///< Of the textures: texture_is_png.
+};
+
 /// Gives triangles under the job's baked decals texture space of their own where they have none, or share
-/// it: where other triangles of the model show the same texels (mirrored halves, tiles, stacked islands),
-/// where their texture coordinates are too coarse for a decal, and where there are none at all. Decals whose
-/// "uv_conflict" is "share" are left as they are; one whose it is "error" fails.
+/// it: where in a slot that the decal writes, other triangles of the model show the same texels (mirrored
+/// halves, tiles, stacked islands), where their texture coordinates are too coarse for a decal, and where
+/// there are none at all. Decals whose "uv_conflict" is "share" are left as they are; one whose it is "error"
+/// fails.
 ///
 /// In the model, such triangles become a primitive of the same mesh with a material of its own; all textures
-/// of the material are resampled into an atlas, so that what the decal does not cover looks as before. The
-/// job then is about the new model: its decals' surfaces refer to the new parts. Without a conflict nothing
-/// changes.
+/// of the material are resampled into an atlas, so that what the decal does not cover looks as before, and
+/// stored as `encoding` says, unless a decal is baked into them afterwards. A decal for all instances changes
+/// the mesh that they share. The job then is about the new model: its decals' surfaces refer to the new
+/// parts. Without a conflict nothing changes.
 ///
-/// Returns the parts of the new model that consist of separated triangles, ascending. Adds warnings to the
-/// decals: uv_slot_not_resampled, uv_atlas_coarser. Errors: uvs_shared; those of load_model_image and
-/// lay_out_uvs.
-Result<std::vector<std::uint32_t>> separate_uvs(SolvedJob& job);
+/// Adds warnings to the decals: uv_slot_not_resampled, uv_atlas_coarser. Errors: uvs_missing, uvs_shared;
+/// those of load_model_image, encode_texture and lay_out_uvs.
+Result<SeparatedUvs> separate_uvs(SolvedJob& job, const TextureEncoding& encoding = {});
 
 }  // namespace applique

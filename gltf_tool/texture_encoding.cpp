@@ -47,6 +47,10 @@ int working_bits(const TextureEncoding& encoding, int bits) {
   return encoding.format == TextureFormat::png ? std::max(bits, encoding.bits.value_or(bits)) : bits;
 }
 
+Warning png_warning(const std::string& texture, const EncodedTexture& encoded) {
+  return {"texture_is_png", fmt::format("{} is stored as a PNG: {}", texture, encoded.why_png)};
+}
+
 Result<EncodedTexture> encode_texture(const Image& texture, const TextureEncoding& encoding) {
   EncodedTexture encoded;
   encoded.why_png = why_not(texture, encoding.format);

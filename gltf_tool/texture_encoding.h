@@ -35,4 +35,7 @@ int working_bits(const TextureEncoding& encoding, int bits);
 /// side of more than 16383 texels as WebP. Errors: output_unwritable.
 Result<EncodedTexture> encode_texture(const Image& texture, const TextureEncoding& encoding);
 
+/// Tells that a texture ("the baseColor texture of 'skin'") is not stored in the wanted format.
+Warning png_warning(const std::string& texture, const EncodedTexture& encoded);
+
 }  // namespace applique

@@ -43,6 +43,11 @@ void add_slots(const Json& object, const SlotPointer& place, std::vector<Texture
 
 }  // namespace
 
+SlotPointer pointer_to(MaterialSlot slot) {
+  const bool in_pbr = slot == MaterialSlot::base_color || slot == MaterialSlot::metallic_roughness;
+  return SlotPointer(in_pbr ? "/pbrMetallicRoughness" : "") / (name_of(slot) + std::string("Texture"));
+}
+
 std::vector<TextureSlots> find_texture_slots(const Json& material) {
   std::vector<TextureSlots> list;
   add_slots(material, SlotPointer(), list);

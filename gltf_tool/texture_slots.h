@@ -20,6 +20,9 @@ struct TextureSlots {
   TexelContent content = TexelContent::data;
 };
 
+/// A slot of the core material.
+SlotPointer pointer_to(MaterialSlot slot);
+
 /// All textures of a material of a checked document, those of its extensions too.
 std::vector<TextureSlots> find_texture_slots(const Document::Json& material);
 

@@ -347,7 +347,10 @@ std::array<Texel, 3> texels_of(const SolvedJob& job, const SeparatedTriangle& t,
 
 bool has_texture_space(const SolvedJob& job, const SeparatedTriangle& t, const std::array<int, 2>& texture) {
   if (texture[0] == 0 || job.model.parts[t.part].uvs.empty()) return false;
-  const auto texels = texels_of(job, t, texture);
+  return is_fine_enough(job, t, texels_of(job, t, texture));
+}
+
+bool is_fine_enough(const SolvedJob& job, const SeparatedTriangle& t, const std::array<Texel, 3>& texels) {
   if (!(std::abs(doubled_area(texels)) > 0)) return false;
   const auto pixels = image_corners(job, t);
   return doubled_area(pixels) == 0 || half_axes(map_between(pixels, texels))[1] * coarsest >= 1;

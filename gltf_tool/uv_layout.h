@@ -67,6 +67,10 @@ Result<UvLayout> lay_out_uvs(const SolvedJob& job, const LayoutRequest& request)
 bool has_texture_space(const SolvedJob& job, const SeparatedTriangle& triangle,
                        const std::array<int, 2>& texture);
 
+/// Whether a triangle that is laid out so, in texels, has enough of them for the decal.
+bool is_fine_enough(const SolvedJob& job, const SeparatedTriangle& triangle,
+                    const std::array<Texel, 3>& texels);
+
 /// The pixels of the decal's image on a triangle.
 double pixels_on(const SolvedJob& job, const SeparatedTriangle& triangle);
 

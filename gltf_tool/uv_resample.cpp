@@ -65,7 +65,7 @@ class Sampler {
 
   [[nodiscard]] Stored store(const Value& value) const {
     Stored stored = {};
-    const double steps = image_.bits == 8 ? 255 : largest_stored;
+    const double steps = r_.bits == 8 ? 255 : largest_stored;
     for (std::size_t c = 0; c < 4; ++c) {
       double x = std::clamp(value[c], 0.0, 1.0);
       if (c < 3 && r_.content == TexelContent::colour) x = linear_to_srgb(x);
@@ -250,14 +250,9 @@ class Filler {
     const auto& corners = corners_[triangle];
     const auto& old = r_.old_corners[triangle];
     const auto weights = weights_near(corners, {x + 0.5, y + 0.5});
-    // The map is the triangle's, moved so that its centre is right: in the gutter that is the border's point.
-    TexelMap map = doubled_area(corners) == 0 ? TexelMap{0, 0, 0, 0, 0, 0} : map_between(corners, old);
-    const Texel there = map({x + 0.5, y + 0.5});
-    Texel right = {};
-    for (std::size_t k = 0; k < 3; ++k)
-      for (std::size_t c = 0; c < 2; ++c) right[c] += weights[k] * old[k][c];
-    map.x0 += right[0] - there[0];
-    map.y0 += right[1] - there[1];
+    // In the gutter too, so that at the border filtering shows what it showed.
+    const TexelMap map =
+        doubled_area(corners) == 0 ? TexelMap{0, 0, 0, 0, old[0][0], old[0][1]} : map_between(corners, old);
     Value value = mean_over(x, y, samples_for(map), map);
     if (r_.content == TexelContent::normal && !r_.turns.empty()) turn(r_.turns[triangle], weights, value);
     put(x, y, value);
@@ -313,7 +308,7 @@ class Filler {
 Image resample_texture(const Resampling& resampling) {
   Image out = make_image(resampling.size[0], resampling.size[1], mean_colour(*resampling.texture));
   out.channels = resampling.texture->channels;
-  out.bits = resampling.texture->bits;
+  out.bits = resampling.bits;
   Filler filler(resampling, out);
   for (const AtlasChart& chart : resampling.layout->charts) filler.fill(chart);
   return out;

@@ -31,6 +31,7 @@ struct Resampling {
   TexelContent content = TexelContent::colour;
   const UvLayout* layout = nullptr;
   std::array<int, 2> size = {0, 0};  ///< Texels of the new texture.
+  int bits = 8;                      ///< A channel of the new texture, 8 or 16.
   /// Old texels of the texture that the layout started from, by texel of this one, where both are shown
   /// through the same texture coordinates; charts that are kept are then copied as a whole, unless something
   /// is to be turned. Zero: others.
@@ -39,10 +40,10 @@ struct Resampling {
   std::vector<std::array<FrameTurn, 3>> turns;    ///< By triangle and corner; empty: none is turned.
 };
 
-/// The texture in its new layout, with the old one's channels and bits. Each texel gets what the sampler
+/// The texture in its new layout, with the old one's channels. Each texel gets what the sampler
 /// shows of the old texture at its centre (bilinear, wrapped), or the mean over its square where the old one
-/// is finer; texels that are hit exactly are copied. The gutter continues what lies inside; between the
-/// charts is the mean colour.
+/// is finer; texels that are hit exactly are copied. The gutter continues the old texture as the
+/// nearest triangle shows it; between the charts is the mean colour.
 Image resample_texture(const Resampling& resampling);
 
 }  // namespace applique

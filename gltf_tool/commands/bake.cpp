@@ -160,12 +160,14 @@ Result<void> run_bake(const BakeArguments& arguments, const CommonArguments& com
   if (arguments.preview) input.preview_output = arguments.preview->string();
   input.textures = std::move(baked.textures);
   input.densities = std::move(baked.densities);
+  input.uv_conflicts = std::move(baked.uv_conflicts);
   input.warnings = std::move(baked.warnings);
   input.total_seconds = total.seconds();
   if (arguments.report) APPLIQUE_CHECK(write_json(*arguments.report, make_report(solved, input)));
   log_warnings(solved);
   for (const Warning& warning : input.warnings) spdlog::warn("{}", warning.message);
   log_decals(solved);
+  log_separations(input.uv_conflicts);
   for (const auto& [stage, seconds] : input.times.stages()) spdlog::debug("{}: {:.3f} s", stage, seconds);
   spdlog::info("{} written in {:.2f} s", arguments.output.string(), total.seconds());
   return {};

@@ -1,9 +1,12 @@
 #include "commands/check.h"
 
+#include <spdlog/spdlog.h>
+
 #include "output_file.h"
 #include "progress.h"
 #include "report.h"
 #include "solve_job.h"
+#include "uv_conflict.h"
 
 namespace applique {
 namespace {
@@ -16,6 +19,27 @@ nlohmann::ordered_json regions_of(const SolvedJob& job) {
     regions[decal.job.name] = {{"contour", std::move(contour)}};
   }
   return regions;
+}
+
+/// What a bake would find of texture coordinates, by decal; what it would fail with, if it would.
+struct UvCheck {
+  std::vector<std::vector<UvConflictReport>> conflicts;
+  std::optional<Error> error;
+};
+
+Result<UvCheck> check_uvs(SolvedJob& job) {
+  UvCheck check;
+  check.conflicts.resize(job.decals.size());
+  APPLIQUE_TRY(const auto groups, find_uv_conflicts(job));
+  for (const auto& [group, findings] : groups)
+    for (const UvFinding& finding : findings) {
+      UvConflictReport report = report_of(job, group, finding);
+      if (finding.outcome == UvConflict::error && !check.error) check.error = error_of(job, group, finding);
+      if (finding.outcome == UvConflict::share)
+        job.decals[finding.decal].warnings.push_back({"uv_conflict", report.message});
+      check.conflicts[finding.decal].push_back(std::move(report));
+    }
+  return check;
 }
 
 }  // namespace
@@ -54,8 +78,10 @@ Result<void> run_check(const CheckArguments& arguments, const CommonArguments& c
     APPLIQUE_TRY(solved, solve_job(job, show_stages(progress, 0, solve_share)));
     if (arguments.suggest) suggest_features(solved, show_stages(progress, solve_share, 1 - solve_share));
   }
+  APPLIQUE_TRY(UvCheck uvs, check_uvs(solved));
   log_warnings(solved);
   log_decals(solved);
+  log_separations(uvs.conflicts);
   log_suggestions(solved);
 
   if (arguments.dump_region) APPLIQUE_CHECK(write_json(*arguments.dump_region, regions_of(solved)));
@@ -64,9 +90,11 @@ Result<void> run_check(const CheckArguments& arguments, const CommonArguments& c
     input.command = "check";
     if (arguments.dump_region) input.region_output = arguments.dump_region->string();
     input.times = solved.times;
+    input.uv_conflicts = std::move(uvs.conflicts);
     input.total_seconds = total.seconds();
     APPLIQUE_CHECK(write_json(*arguments.report, make_report(solved, input)));
   }
+  if (uvs.error) return tl::unexpected<Error>(std::move(*uvs.error));
   return {};
 }
 

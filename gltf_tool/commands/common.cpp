@@ -48,6 +48,12 @@ void log_decals(const SolvedJob& job) {
   }
 }
 
+void log_separations(const std::vector<std::vector<UvConflictReport>>& conflicts) {
+  for (const auto& of_decal : conflicts)
+    for (const UvConflictReport& conflict : of_decal)
+      if (conflict.outcome == "separate") spdlog::info("{}", conflict.message);
+}
+
 void log_suggestions(const SolvedJob& job) {
   for (const SolvedDecal& decal : job.decals) {
     if (!decal.suggestion) continue;

@@ -9,6 +9,7 @@
 #include "applique/base/error.h"
 
 #include "model_picture.h"
+#include "report.h"
 #include "solve_job.h"
 
 namespace applique {
@@ -31,6 +32,9 @@ void log_warnings(const SolvedJob& job);
 
 /// One line about each decal: "tiger: 5 features within 2e-13 px, 5796 triangles, …".
 void log_decals(const SolvedJob& job);
+
+/// Which triangles get texture space of their own, and why.
+void log_separations(const std::vector<std::vector<UvConflictReport>>& conflicts);
 
 /// What was suggested for each decal, if it was asked for: the further feature as a job file has it, the one
 /// too many, and the L2 stretch with and without.

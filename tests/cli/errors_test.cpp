@@ -133,7 +133,7 @@ TEST_F(ErrorsTest, UvsMissingNamesTheMeshAndTheWayOut) {
   expect_failure(job, 3, {"'crest'", "'Bare'", "no texture coordinates", "separate", "overlay"},
                  "bake job.json -o out.glb");
   job["decals"][0]["uv_conflict"] = "error";
-  expect_failure(job, 3, {"'crest'", "'paint'", "without texture coordinates", "separate"},
+  expect_failure(job, 3, {"'crest'", "'paint'", "'Bare'", "no texture coordinates", "separate", "overlay"},
                  "bake job.json -o out.glb");
 }
 

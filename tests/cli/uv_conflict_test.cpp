@@ -1,6 +1,8 @@
 // Texture coordinates that a decal cannot simply be baked through: shared, mirrored, tiled, collapsed or
 // none.
 
+#include "cli/uv_conflict.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -8,153 +10,13 @@
 #include <nlohmann/json.hpp>
 
 #include "binary_edit.h"
-#include "cli/command.h"
 #include "cli/same_look.h"
-#include "cli/small_model.h"
 #include "gltf/test_models.h"
-#include "gltf/validator.h"
-#include "model.h"
-#include "save_document.h"
-#include "schema.h"
 
 namespace applique {
 namespace {
 
 using nlohmann::json;
-
-constexpr int image_size = 64;
-constexpr std::array<std::uint16_t, 4> red = {0xffff, 0, 0, 0xffff};
-
-/// The cube from -1 to 1 whose six faces all show the whole texture.
-SmallMesh make_box() {
-  SmallMesh box;
-  box.name = "Box";
-  const SmallMesh face = make_plane("Face", 8);
-  for (int axis = 0; axis < 3; ++axis)
-    for (const double side : {-1.0, 1.0}) {
-      const auto base = static_cast<std::uint32_t>(box.positions.size());
-      for (const Vec3& place : face.positions) {
-        Vec3 p;
-        p[axis] = side;
-        p[(axis + 1) % 3] = place.x() * side;
-        p[(axis + 2) % 3] = place.y();
-        box.positions.push_back(p);
-      }
-      box.uvs.insert(box.uvs.end(), face.uvs.begin(), face.uvs.end());
-      for (const auto& t : face.triangles) box.triangles.push_back({base + t[0], base + t[1], base + t[2]});
-    }
-  return box;
-}
-
-/// A wall from x = -2 to 2 at z = 0 whose right half mirrors the left one's texture coordinates.
-SmallMesh make_mirrored_wall() {
-  SmallMesh wall = make_plane("Wall", 8);
-  for (std::size_t i = 0; i < wall.positions.size(); ++i) {
-    const double x = wall.positions[i].x();
-    wall.positions[i].x() = 2 * x;
-    wall.uvs[i][0] = 1 - std::abs(x);
-  }
-  return wall;
-}
-
-class UvConflictTest : public testing::Test {
- protected:
-  void SetUp() override {
-    Image image = make_image(image_size, image_size, red);
-    image.channels = 3;
-    write_png(folder_ / "image.png", image);
-  }
-
-  void write_model(const std::vector<SmallMesh>& meshes, int texture_size = 128) {
-    write_small_model(
-        folder_ / "model.glb", meshes,
-        {{"paint", make_noise(texture_size), {1, 1, 1, 1}}, {"plain", std::nullopt, {0.5, 0.25, 1, 1}}});
-  }
-
-  /// Changes the model's document.
-  template <class Edit>
-  void edit_model(const Edit& edit) {
-    Document document = load_document(folder_ / "model.glb").value();
-    edit(document);
-    ASSERT_TRUE(save_document(document, folder_ / "model.glb"));
-  }
-
-  /// The image, 1 wide, seen from the front at (x, y).
-  static json job_at(double x, double y) {
-    const json ray = {{"origin", {x, y, 20}}, {"direction", {0, 0, -1}}};
-    return {{"version", 1},
-            {"model", "model.glb"},
-            {"texture_size", 256},
-            {"decals", json::array({{{"name", "crest"},
-                                     {"image", "image.png"},
-                                     {"size", 1},
-                                     {"up", {0, 1, 0}},
-                                     {"features", {{{"image", {32, 32}}, {"ray", ray}}}}}})}};
-  }
-
-  /// Bakes, and returns the report.
-  json bake(const json& job, const std::string& output = "out.glb") {
-    folder_.write("job.json", job);
-    const CommandResult result = folder_.run("bake job.json --report report.json -o " + output);
-    EXPECT_EQ(result.status, 0) << result.err;
-    if (result.status != 0) return {};
-    json report = json::parse(folder_.read("report.json"));
-    const auto valid = check_schema(report, report_schema(), "report.json");
-    EXPECT_TRUE(valid) << valid.error().message;
-    return report;
-  }
-
-  Model load(const std::string& name) const { return load_model(folder_ / name).value(); }
-
-  /// With the decal unseen, the model looks as before everywhere; the report has no warnings.
-  void expect_same_look(json job) {
-    job["decals"][0]["opacity"] = 0;
-    const json report = bake(job, "unseen.glb");
-    ASSERT_TRUE(report.is_object());
-    EXPECT_EQ(report["decals"][0]["warnings"], json::array());
-    EXPECT_GT(report["textures"][0]["separated_triangles"], 0);
-    EXPECT_EQ(report["textures"][0]["shared_texels"], 0);
-    const Model before = load("model.glb");
-    const Model after = load("unseen.glb");
-    const LookDifference difference = compare_looks(before, after);
-    std::size_t triangles = 0;
-    for (const ModelPart& part : before.parts) triangles += part.triangles.size();
-    EXPECT_EQ(difference.triangles, triangles);
-    EXPECT_EQ(difference.missing, 0u);
-    EXPECT_LT(difference.largest, 2);
-  }
-
-  /// The most that two pictures differ, in steps of 1/255, of the models seen from an angle.
-  double picture_difference(const std::string& before, const std::string& after, int azimuth) {
-    Image pictures[2];
-    for (int i = 0; i < 2; ++i) {
-      const std::string& name = i == 0 ? before : after;
-      const CommandResult result =
-          folder_.run("render " + name + " -o picture.png --size 400x300 --azimuth " +
-                      std::to_string(azimuth) + " --elevation 0");
-      EXPECT_EQ(result.status, 0) << result.err;
-      pictures[i] = read_image(folder_ / "picture.png").value();
-    }
-    int largest = 0;
-    for (std::size_t i = 0; i < pictures[0].rgba.size(); ++i)
-      largest = std::max(largest, std::abs(int(pictures[0].rgba[i]) - int(pictures[1].rgba[i])));
-    return largest / 257.0;
-  }
-
-  /// Nothing that the validator says of the output is new.
-  void expect_valid(const std::string& output) {
-    const auto counts = validate({folder_ / "model.glb", folder_ / output});
-    if (!counts) return;  // The validator is not installed; CI has it.
-    for (const auto& [code, count] : (*counts)[1])
-      EXPECT_TRUE((*counts)[0].contains(code)) << output << ": " << code;
-  }
-
-  CommandFolder folder_;
-};
-
-bool is_red(const std::array<double, 4>& colour) {
-  return colour[0] > 253 && colour[1] < 2 && colour[2] < 2;
-}
 
 TEST_F(UvConflictTest, OneFaceOfABoxThatSharesItsTexture) {
   write_model({make_box()});
