@@ -5,6 +5,7 @@
 #include <utility>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "attach_overlay.h"
 #include "bake_plan.h"
@@ -93,6 +94,19 @@ void warn_of_vertex_colours(SolvedDecal& decal, const Model& model) {
            "decal '{}': the model's vertex colours (COLOR_0) multiply the texture under it, and so the "
            "decal; make them white there, or the decal \"output\": \"overlay\"",
            decal.job.name)});
+}
+
+/// Variants that show another material under the decal, and so the surface without it.
+void warn_of_variants(SolvedDecal& decal, const Model& model) {
+  if (decal.job.output != DecalOutput::bake) return;
+  const std::vector<std::string> names = variants_without(decal, model);
+  if (names.empty()) return;
+  decal.warnings.push_back(
+      {"variants_without_decal",
+       fmt::format(
+           "decal '{}': the material variants {} show other materials under it, without the decal; an "
+           "\"output\": \"overlay\" is seen in all",
+           decal.job.name, fmt::join(names, ", "))});
 }
 
 /// Factors of a texture that was there before: they stay, and so change what the decal brings.
@@ -228,6 +242,7 @@ Result<void> transfer_all(SolvedJob& job, std::vector<TargetWork>& works, GpuBak
     baked.densities.push_back(texel_density(job.decals[d], transfers[d]));
     warn_of_density(job.decals[d], baked.densities[d]);
     warn_of_vertex_colours(job.decals[d], job.model);
+    warn_of_variants(job.decals[d], job.model);
   }
   return {};
 }

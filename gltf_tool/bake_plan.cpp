@@ -131,17 +131,18 @@ void turn_into_tangent_space(const ModelPart& part, const std::array<std::uint32
 }
 
 /// What the factors of a material make of a slot without a texture, as the texture would store it.
-std::array<std::uint16_t, 4> factor_value(const Model& model, const BakeTarget& target) {
+std::array<std::uint16_t, 4> factor_value(const Model& model, std::optional<std::size_t> index,
+                                          MaterialSlot slot) {
   const auto none = nlohmann::ordered_json::object();
-  const auto& material = target.material ? model.document.json.at("materials").at(*target.material) : none;
+  const auto& material = index ? model.document.json.at("materials").at(*index) : none;
   const auto number = [&](const char* key) {
     const auto* value = find(material, {"pbrMetallicRoughness", key});
     return value != nullptr ? value->get<double>() : 1.0;
   };
-  switch (target.slot) {
+  switch (slot) {
     case MaterialSlot::base_color: {
-      const auto factor = target.material ? model.materials[*target.material].base_colour_factor
-                                          : std::array<double, 4>{1, 1, 1, 1};
+      const auto factor =
+          index ? model.materials[*index].base_colour_factor : std::array<double, 4>{1, 1, 1, 1};
       return {stored(linear_to_srgb(factor[0])), stored(linear_to_srgb(factor[1])),
               stored(linear_to_srgb(factor[2])), stored(factor[3])};
     }
@@ -248,9 +249,14 @@ bool has_texture(const Model& model, const BakeTarget& target) {
 Result<Image> initial_texture(const SolvedJob& job, const BakeTarget& target) {
   if (const MaterialTexture texture = texture_of(job.model, target); texture.image)
     return load_model_image(job.model, *texture.image);
-  const auto [width, height] = size_of_new(job, target.material, target.slot);
-  const auto value = factor_value(job.model, target);
-  Image image = make_image(width, height, value);
+  return texture_of_factors(job, target.material, target.slot,
+                            size_of_new(job, target.material, target.slot));
+}
+
+Image texture_of_factors(const SolvedJob& job, std::optional<std::size_t> material, MaterialSlot slot,
+                         const std::array<int, 2>& size) {
+  const auto value = factor_value(job.model, material, slot);
+  Image image = make_image(size[0], size[1], value);
   if (value[3] == 65535) image.channels = 3;
   return image;
 }

@@ -48,6 +48,10 @@ Result<std::vector<BakeTarget>> plan_bake(const SolvedJob& job, Document& docume
 /// that nothing reads, a flat normal). Errors: those of load_model_image.
 Result<Image> initial_texture(const SolvedJob& job, const BakeTarget& target);
 
+/// A texture of the values that a material's factors give in a slot.
+Image texture_of_factors(const SolvedJob& job, std::optional<std::size_t> material, MaterialSlot slot,
+                         const std::array<int, 2>& size);
+
 /// Whether the target's slot has an image.
 bool has_texture(const Model& model, const BakeTarget& target);
 

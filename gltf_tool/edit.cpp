@@ -69,7 +69,24 @@ std::vector<std::size_t> instance_ranks(std::span<const PartKey> parts) {
   return ranks;
 }
 
+void lead_variants(Json& primitive, std::size_t from, std::size_t to) {
+  if (find(primitive, {"extensions", "KHR_materials_variants", "mappings"}) == nullptr) return;
+  auto& mappings = primitive["extensions"]["KHR_materials_variants"]["mappings"];
+  if (!mappings.is_array()) return;
+  for (auto& mapping : mappings)
+    if (index_of(mapping, "material") == from) mapping["material"] = to;
+}
+
 namespace {
+
+/// How often a primitive uses a material: itself and by its variants.
+std::size_t count_uses_in(const Json& primitive, std::size_t material) {
+  std::size_t uses = index_of(primitive, "material") == material ? 1 : 0;
+  const auto* mappings = find(primitive, {"extensions", "KHR_materials_variants", "mappings"});
+  if (mappings == nullptr || !mappings->is_array()) return uses;
+  for (const auto& mapping : *mappings) uses += index_of(mapping, "material") == material ? 1 : 0;
+  return uses;
+}
 
 /// How often the document's meshes use a material, by primitives and by variants.
 std::map<std::size_t, std::size_t> count_material_uses(const Document& document) {
@@ -248,7 +265,9 @@ std::vector<std::size_t> isolate_materials(Document& document, std::span<const P
   const auto uses = count_material_uses(document);
   std::map<std::size_t, std::size_t> touched_uses;
   for (const auto& [group, members] : groups)
-    if (group.first) touched_uses[*group.first] += members.size();
+    if (group.first)
+      for (const std::size_t i : members)
+        touched_uses[*group.first] += count_uses_in(primitive_of(i), *group.first);
   std::set<std::size_t> taken;
   std::vector<std::size_t> result(parts.size());
   for (const auto& [group, members] : groups) {
@@ -264,6 +283,7 @@ std::vector<std::size_t> isolate_materials(Document& document, std::span<const P
     }
     for (const std::size_t i : members) {
       primitive_of(i)["material"] = material;
+      if (group.first) lead_variants(primitive_of(i), *group.first, material);
       result[i] = material;
     }
   }

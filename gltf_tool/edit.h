@@ -24,11 +24,15 @@ std::vector<std::size_t> instance_ranks(std::span<const PartKey> parts);
 
 /// Makes the material of each given part (all that a decal touches) one that nothing else uses, and returns
 /// its index, by part. A mesh that other nodes show too is copied for the node (accessors stay shared), but
-/// not for a part that stands for all of them; a material that other primitives, or variants, use is copied;
-/// a part without a material gets one. Parts that shared a material go on sharing it, unless they are
-/// instances of one mesh, whose texture coordinates would coincide. The document must have passed
-/// check_document; the parts are distinct and exist.
+/// not for a part that stands for all of them; a material that other primitives, or their variants, use is
+/// copied; a part without a material gets one. Variants of a part that show its material go on showing what
+/// it has. Parts that shared a material go on sharing it, unless they are instances of one mesh, whose
+/// texture coordinates would coincide. The document must have passed check_document; the parts are distinct
+/// and exist.
 std::vector<std::size_t> isolate_materials(Document& document, std::span<const PartKey> parts);
+
+/// Leads a primitive's variants (KHR_materials_variants) that show one material to another.
+void lead_variants(Document::Json& primitive, std::size_t from, std::size_t to);
 
 /// Shows an image (bytes of a PNG, JPEG or WebP) in a slot of an isolated material. The texture is copied
 /// first when other materials or slots use it; its sampler, and the material's texture coordinates, stay. A

@@ -4,6 +4,8 @@
 #include <map>
 #include <utility>
 
+#include <fmt/format.h>
+
 namespace applique {
 namespace {
 
@@ -97,6 +99,36 @@ std::uint32_t part_that_stands_for(const Model& model, const DecalJob& decal, st
     return primitive_of(other) == primitive_of(model.parts[part]);
   });
   return static_cast<std::uint32_t>(first - model.parts.begin());
+}
+
+std::vector<std::string> variants_without(const SolvedDecal& decal, const Model& model) {
+  std::set<Primitive> primitives;
+  for_textured_sources(decal, [&](const ModelSurface::Source& source) {
+    primitives.insert(primitive_of(model.parts[source.part]));
+  });
+  std::set<std::size_t> variants;
+  for (const auto& [mesh, index] : primitives) {
+    const auto& primitive = model.document.json["meshes"][mesh]["primitives"][index];
+    const auto* mappings = find(primitive, {"extensions", "KHR_materials_variants", "mappings"});
+    if (mappings == nullptr || !mappings->is_array()) continue;
+    for (const auto& mapping : *mappings) {
+      const auto* list = find(mapping, {"variants"});
+      if (list == nullptr || !list->is_array() ||
+          index_of(mapping, "material") == index_of(primitive, "material"))
+        continue;
+      for (const auto& variant : *list)
+        if (const auto v = as_index(variant)) variants.insert(*v);
+    }
+  }
+  std::vector<std::string> names;
+  const auto* list = find(model.document.json, {"extensions", "KHR_materials_variants", "variants"});
+  for (const std::size_t v : variants) {
+    const bool named = list != nullptr && list->is_array() && v < list->size() &&
+                       (*list)[v].contains("name") && (*list)[v]["name"].is_string();
+    names.push_back(named ? fmt::format("'{}'", (*list)[v]["name"].get<std::string>())
+                          : fmt::format("{}", v));
+  }
+  return names;
 }
 
 bool has_vertex_colours(const SolvedDecal& decal, const Model& model) {

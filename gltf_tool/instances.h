@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <optional>
 #include <set>
+#include <string>
 #include <vector>
 
 #include "solve_job.h"
@@ -30,6 +31,10 @@ std::optional<std::uint32_t> part_that_shows(const Model& model, const DecalJob&
 /// The part that stands for all that a decal changes with `part`: for a decal for all instances, the model's
 /// first part of the same primitive; else the part itself.
 std::uint32_t part_that_stands_for(const Model& model, const DecalJob& decal, std::uint32_t part);
+
+/// The names, quoted, of the material variants (KHR_materials_variants) in which the surface under a decal
+/// shows another material than by default.
+std::vector<std::string> variants_without(const SolvedDecal& decal, const Model& model);
 
 /// Whether vertex colours (COLOR_0) that are not white lie under a decal, and so tint it.
 bool has_vertex_colours(const SolvedDecal& decal, const Model& model);

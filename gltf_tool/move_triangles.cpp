@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "binary_edit.h"
+#include "edit.h"
 #include "geometry.h"
 
 namespace applique {
@@ -55,6 +56,7 @@ class Mover {
  public:
   Mover(Document& document, const Model& model, const tinygltf::Model& geometry, const MovedTriangles& moved)
       : document_(document),
+        model_(model),
         part_(model.parts[moved.part]),
         entry_(geometry.meshes[part_.mesh].primitives[part_.primitive]),
         geometry_(geometry),
@@ -101,6 +103,8 @@ class Mover {
     primitive["attributes"] = std::move(attributes);
     primitive["indices"] = add_indices(corners.indices, corners.sources.size());
     primitive["material"] = moved_.material;
+    restore_variants(primitive);
+    if (part_.material) lead_variants(primitive, *part_.material, moved_.material);
     return primitive;
   }
 
@@ -117,7 +121,15 @@ class Mover {
     primitive["indices"] = add_indices(rest, part_.positions.size());
     primitive.erase("material");
     if (moved_.rest_material) primitive["material"] = *moved_.rest_material;
+    restore_variants(primitive);
     return primitive;
+  }
+
+  /// Those of the model before any change.
+  void restore_variants(Json& primitive) const {
+    constexpr const char* variants = "KHR_materials_variants";
+    const auto& before = model_.document.json["meshes"][part_.mesh]["primitives"][part_.primitive];
+    if (const auto* old = find(before, {"extensions", variants})) primitive["extensions"][variants] = *old;
   }
 
   /// What a list of triangles with indices and without compression does not have.
@@ -191,6 +203,7 @@ class Mover {
   }
 
   Document& document_;
+  const Model& model_;
   const ModelPart& part_;
   const tinygltf::Primitive& entry_;
   const tinygltf::Model& geometry_;

@@ -93,7 +93,8 @@ class Separation {
       APPLIQUE_CHECK(resample(slots[s], images[s], group, request, layout, material, set,
                               std::move(corners[s]), std::move(turns)));
     }
-    if (set != 0 && !group.has_texture) APPLIQUE_CHECK(make_textures(group, written, material, set));
+    if (set != 0 && !is_resampled(MaterialSlot::base_color, slots, images))
+      APPLIQUE_CHECK(make_textures(group, written, material, layout, set));
     return move(request, layout, material, set, tangents);
   }
 
@@ -174,6 +175,7 @@ class Separation {
     for (const MaterialSlot slot : written) baked.push_back(pointer_to(slot));
     std::vector<BakedSlots> list;
     for (TextureSlots& slots : find_texture_slots(document_.json["materials"][material])) {
+      if (slots.texture >= count_of(document_, "textures")) continue;  // Of an extension that is not checked.
       const auto rest =
           std::stable_partition(slots.slots.begin(), slots.slots.end(), [&](const SlotPointer& pointer) {
             return std::find(baked.begin(), baked.end(), pointer) != baked.end();
@@ -248,16 +250,25 @@ class Separation {
     return used ? sets : 0;
   }
 
-  /// The textures that a bake would make for the slots, which it would show through the first set.
+  static bool is_resampled(MaterialSlot slot, const std::vector<BakedSlots>& slots,
+                           const std::vector<Image>& images) {
+    const SlotPointer pointer = pointer_to(slot);
+    for (std::size_t s = 0; s < slots.size(); ++s)
+      if (!images[s].rgba.empty() &&
+          std::find(slots[s].slots.begin(), slots[s].slots.end(), pointer) != slots[s].slots.end())
+        return true;
+    return false;
+  }
+
+  /// The textures that a bake would make for the slots, through the coordinates of a base colour that is not
+  /// there or keeps the old ones.
   Result<void> make_textures(const TextureGroup& group, const std::set<MaterialSlot>& written,
-                             std::size_t material, std::size_t set) {
+                             std::size_t material, const UvLayout& layout, std::size_t set) {
     for (const MaterialSlot slot : written) {
       if (find_texture_info(document_.json["materials"][material], slot) != nullptr) continue;
-      BakeTarget target;
-      target.slot = slot;
-      target.material = group.material;
-      APPLIQUE_TRY(const Image image, initial_texture(job_, target));
-      APPLIQUE_TRY(const auto png, encode_png(image));
+      std::array<int, 2> size = layout.size;
+      if (job_.job.resolution && slot != MaterialSlot::base_color) size.fill(*job_.job.resolution);
+      APPLIQUE_TRY(const auto png, encode_png(texture_of_factors(job_, group.material, slot, size)));
       set_slot_image(document_, material, slot, png);
       show_whole(material, pointer_to(slot), set);
       done_.made.insert({material, slot});

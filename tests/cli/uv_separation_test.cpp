@@ -64,8 +64,10 @@ class UvSeparationTest : public UvConflictTest {
   /// The model with the texture of another slot as its base colour.
   static Model showing(const Model& model, const SlotPointer& slot) {
     Document document = model.document;
-    for (auto& material : document.json["materials"])
+    for (auto& material : document.json["materials"]) {
+      material["pbrMetallicRoughness"].erase("baseColorTexture");
       if (material.contains(slot)) material["pbrMetallicRoughness"]["baseColorTexture"] = material[slot];
+    }
     return decode_model(std::move(document)).value();
   }
 
@@ -379,6 +381,176 @@ TEST_F(UvSeparationTest, ReadsTheSizeOfATextureThatItDoesNotWrite) {
   ASSERT_TRUE(report.is_object());
   EXPECT_EQ(report["textures"][0]["slot"], "normal");
   EXPECT_EQ(report["textures"][0]["width"], 48);
+}
+
+/// Materials with what cannot be resampled or has other materials beside it.
+class OddMaterialsTest : public UvSeparationTest {
+ protected:
+  /// Adds a texture of nothing but a KTX2's header, and returns its index.
+  static std::size_t add_ktx2(Document& document, std::uint8_t side) {
+    std::vector<std::uint8_t> bytes = {0xab, 'K', 'T', 'X', ' ', '2', '0', 0xbb, '\r', '\n', 0x1a, '\n'};
+    bytes.resize(104, 0);
+    bytes[20] = bytes[24] = side;
+    const std::size_t view = add_buffer_view(document, bytes);
+    document.json["images"].push_back({{"mimeType", "image/ktx2"}, {"bufferView", view}});
+    document.json["textures"].push_back(
+        {{"extensions", {{"KHR_texture_basisu", {{"source", document.json["images"].size() - 1}}}}}});
+    for (const char* list : {"extensionsUsed", "extensionsRequired"})
+      document.json[list] = {"KHR_texture_basisu"};
+    return document.json["textures"].size() - 1;
+  }
+
+  static const Json& separated_material(const Model& model) {
+    return model.document
+        .json["materials"]
+             [model.document.json["meshes"][0]["primitives"].back()["material"].get<std::size_t>()];
+  }
+
+  /// The old coordinates of the separated triangles are there as they were, in the set that a reference has.
+  void expect_old_uvs(const Model& model, const Json& reference) {
+    Document document = model.document;
+    for (auto& material : document.json["materials"])
+      if (const SlotPointer base("/pbrMetallicRoughness/baseColorTexture"); material.contains(base))
+        material[base]["texCoord"] = reference.value("texCoord", 0);
+    const Model shown = decode_model(std::move(document)).value();
+    ASSERT_EQ(shown.parts.size(), 2u);
+    for (std::size_t i = 0; i < shown.parts[1].positions.size(); ++i) {
+      const Vec3& p = shown.parts[1].positions[i];
+      EXPECT_NEAR(shown.parts[1].uvs[i][0], 0.5 + 0.5 * p.x(), 1e-6);
+      EXPECT_NEAR(shown.parts[1].uvs[i][1], 0.5 - 0.5 * p.y(), 1e-6);
+    }
+  }
+};
+
+TEST_F(OddMaterialsTest, AKtx2BesideThePaint) {
+  for (const int material : {0, 1}) {
+    SCOPED_TRACE(material);
+    SmallMesh box = make_box();
+    box.material = material;
+    write_model({box});
+    edit_model([&](Document& document) {
+      document.json["materials"][material]["normalTexture"]["index"] = add_ktx2(document, 64);
+    });
+    json job = job_at(0, 0);
+    const json report = bake(job);
+    ASSERT_TRUE(report.is_object());
+    ASSERT_EQ(report["decals"][0]["warnings"].size(), 1u);
+    EXPECT_EQ(report["decals"][0]["warnings"][0]["code"], "uv_slot_not_resampled");
+    EXPECT_EQ(report["textures"][0]["created"], material == 1);
+    const Model after = load("out.glb");
+    EXPECT_TRUE(is_red(colour_near(after, {0.2, 0.3, 1})));
+    EXPECT_FALSE(is_red(colour_near(after, {0.2, 0.3, -1})));
+    expect_old_uvs(after, separated_material(after)["normalTexture"]);
+    job["decals"][0]["opacity"] = 0;
+    bake(job, "unseen.glb");
+    EXPECT_LT(compare_looks(load("model.glb"), load("unseen.glb")).largest, 2);
+  }
+}
+
+TEST_F(OddMaterialsTest, AKtx2AsThePaint) {
+  write_model({make_box()});
+  edit_model([&](Document& document) {
+    document.json["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"]["index"] =
+        add_ktx2(document, 64);
+  });
+  json job = job_at(0.1, 0);
+  folder_.write("job.json", job);
+  for (const char* command : {"check job.json", "bake job.json -o out.glb"}) {
+    const CommandResult result = folder_.run(command);
+    EXPECT_EQ(result.status, 2) << command;
+    EXPECT_NE(result.err.find("KTX"), std::string::npos) << result.err;
+  }
+  // A relief on it goes where the colour cannot.
+  job["decals"][0]["layers"] = {{"baseColor", false}, {"normal", "relief.png"}};
+  const json report = bake(job);
+  ASSERT_TRUE(report.is_object());
+  EXPECT_EQ(report["decals"][0]["warnings"][0]["code"], "uv_slot_not_resampled");
+  EXPECT_EQ(report["textures"][0]["slot"], "normal");
+  EXPECT_EQ(report["textures"][0]["created"], true);
+  const Model after = load("out.glb");
+  expect_old_uvs(after, separated_material(after)["pbrMetallicRoughness"]["baseColorTexture"]);
+  const Model relief = showing(after, normal_slot);
+  EXPECT_NEAR(colour_near(relief, {0.2, 0.3, 1})[0], 204, 2);
+  EXPECT_NEAR(colour_near(relief, {0.7, 0.3, 1})[0], 128, 2);
+}
+
+TEST_F(OddMaterialsTest, Variants) {
+  for (const int material : {0, 1}) {
+    SCOPED_TRACE(material);
+    SmallMesh box = make_box();
+    box.material = material;
+    write_model({box});
+    edit_model([&](Document& document) {
+      auto& root = document.json;
+      root["extensionsUsed"] = {"KHR_materials_variants"};
+      root["extensions"]["KHR_materials_variants"]["variants"] = {{{"name", "plainly"}},
+                                                                  {{"name", "painted"}}};
+      root["meshes"][0]["primitives"][0]["extensions"]["KHR_materials_variants"]["mappings"] = {
+          {{"material", 1}, {"variants", {0}}}, {{"material", 0}, {"variants", {1}}}};
+    });
+    const Model before = load("model.glb");
+    const json report = bake(job_at(0, 0));
+    ASSERT_TRUE(report.is_object());
+    ASSERT_EQ(report["decals"][0]["warnings"].size(), 1u);
+    const json& warning = report["decals"][0]["warnings"][0];
+    EXPECT_EQ(warning["code"], "variants_without_decal");
+    const std::string message = warning["message"];
+    EXPECT_EQ(message.find("'plainly'") != std::string::npos, material == 0) << message;
+    EXPECT_EQ(message.find("'painted'") != std::string::npos, material == 1) << message;
+    const Model after = load("out.glb");
+    EXPECT_TRUE(is_red(colour_near(after, {0.2, 0.3, 1})));
+    EXPECT_FALSE(is_red(colour_near(after, {0.2, 0.3, -1})));
+    // The validator takes coordinates that only a variant shows for unused.
+    if (material == 1) expect_valid("out.glb");
+    // As a viewer shows the variants: the decal in one, the other as it was.
+    for (const std::size_t variant : {0, 1}) {
+      const auto choose = [&](const Model& model) {
+        Document document = model.document;
+        for (auto& primitive : document.json["meshes"][0]["primitives"])
+          primitive["material"] =
+              primitive["extensions"]["KHR_materials_variants"]["mappings"][variant]["material"];
+        return decode_model(std::move(document)).value();
+      };
+      const bool other = (variant == 0) == (material == 0);
+      EXPECT_EQ(is_red(colour_near(choose(after), {0.2, 0.3, 1})), !other);
+      if (other) {
+        EXPECT_LT(compare_looks(choose(before), choose(after)).largest, 1e-6);
+      }
+    }
+  }
+}
+
+/// Triangles whose coordinates lie on a line or in a point, all of them or every other one.
+TEST_F(OddMaterialsTest, CoordinatesWithoutAnArea) {
+  for (const bool line : {false, true})
+    for (const bool all : {false, true}) {
+      SCOPED_TRACE(std::to_string(line) + std::to_string(all));
+      const SmallMesh plane = make_plane("Wall", 8);
+      SmallMesh wall = plane;
+      wall.positions.clear();
+      wall.uvs.clear();
+      for (std::uint32_t t = 0; t < plane.triangles.size(); ++t) {
+        for (std::uint32_t k = 0; k < 3; ++k) {
+          const std::uint32_t vertex = plane.triangles[t][k];
+          wall.positions.push_back(plane.positions[vertex]);
+          wall.uvs.push_back(plane.uvs[vertex]);
+          if (!all && t % 2 == 0) continue;
+          wall.uvs.back()[1] = 0.3;
+          if (!line) wall.uvs.back()[0] = 0.6;
+        }
+        wall.triangles[t] = {3 * t, 3 * t + 1, 3 * t + 2};
+      }
+      write_model({wall});
+      const json job = job_at(0, 0);
+      expect_same_look(job);
+      bake(job);
+      const Model after = load("out.glb");
+      for (const double x : {-0.45, 0.05, 0.2, 0.45})
+        for (const double y : {-0.45, 0.1, 0.4})
+          EXPECT_TRUE(is_red(colour_near(after, {x, y, 0}))) << x << ", " << y;
+      EXPECT_FALSE(is_red(colour_near(after, {0.6, 0.1, 0})));
+      EXPECT_FALSE(is_red(colour_near(after, {0.1, 0.6, 0})));
+    }
 }
 
 }  // namespace

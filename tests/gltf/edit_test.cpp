@@ -149,15 +149,23 @@ TEST(IsolateMaterials, LeavesTheMeshToAllThatShareAChange) {
   EXPECT_EQ(document.json["materials"].size(), 2u);
 }
 
-TEST(IsolateMaterials, CountsVariantsAsUses) {
-  Document document = make_document({0}, {{0}}, 1);
-  auto& primitive = document.json["meshes"][0]["primitives"][0];
-  primitive["extensions"] =
-      Json::parse(R"({"KHR_materials_variants":{"mappings":[{"material":0,"variants":[0]}]}})");
-  const Json mappings = primitive["extensions"];
-  const auto materials = isolate_materials(document, std::vector<PartKey>{{0, 0, 0}});
-  EXPECT_EQ(materials[0], 1u);
-  EXPECT_EQ(document.json["meshes"][0]["primitives"][0]["extensions"], mappings);
+TEST(IsolateMaterials, VariantsOfThePartFollow) {
+  const auto mappings = [](Document& document, std::size_t mesh) -> Json& {
+    return document.json["meshes"][mesh]["primitives"][0]["extensions"]["KHR_materials_variants"]["mappings"];
+  };
+  const Json both = Json::parse(R"([{"material":0,"variants":[0]},{"material":1,"variants":[1]}])");
+  Document alone = make_document({0}, {{0}}, 2);
+  mappings(alone, 0) = both;
+  EXPECT_EQ(isolate_materials(alone, std::vector<PartKey>{{0, 0, 0}})[0], 0u) << "nothing else uses it";
+  EXPECT_EQ(mappings(alone, 0), both);
+
+  Document shared = make_document({0, 1}, {{0}, {1}}, 2);
+  mappings(shared, 0) = both;
+  mappings(shared, 1) = both;
+  EXPECT_EQ(isolate_materials(shared, std::vector<PartKey>{{0, 0, 0}})[0], 2u);
+  EXPECT_EQ(mappings(shared, 0)[0]["material"], 2u);
+  EXPECT_EQ(mappings(shared, 0)[1]["material"], 1u);
+  EXPECT_EQ(mappings(shared, 1), both) << "a variant of another part is a use of its own";
 }
 
 TEST(IsolateMaterials, MakesAMaterialWhereThereIsNone) {
