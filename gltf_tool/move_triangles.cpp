@@ -32,21 +32,21 @@ struct Corners {
 
 Corners gather_corners(const ModelPart& part, const MovedTriangles& moved) {
   Corners corners;
-  std::map<std::tuple<std::uint32_t, float, float>, std::size_t> known;
+  std::map<std::tuple<std::uint32_t, std::array<float, 2>, std::array<float, 4>>, std::size_t> known;
   for (std::size_t i = 0; i < moved.triangles.size(); ++i) {
     const auto& triangle = part.triangles[moved.triangles[i]];
     // The decoder exchanged two corners where the node mirrors: back to the file's order.
     for (const std::size_t k :
          part.mirrored ? std::array<std::size_t, 3>{0, 2, 1} : std::array<std::size_t, 3>{0, 1, 2}) {
       const auto& uv = moved.uvs[i][k];
-      const auto [place, fresh] = known.try_emplace({triangle[k], uv[0], uv[1]}, known.size());
+      const auto tangent = moved.tangents.empty() ? std::array<float, 4>{} : moved.tangents[i][k];
+      const auto [place, fresh] = known.try_emplace({triangle[k], uv, tangent}, known.size());
       corners.indices.push_back(static_cast<double>(place->second));
       if (!fresh) continue;
       corners.sources.push_back(triangle[k]);
       corners.uvs.insert(corners.uvs.end(), uv.begin(), uv.end());
       if (!moved.tangents.empty())
-        corners.tangents.insert(corners.tangents.end(), moved.tangents[i][k].begin(),
-                                moved.tangents[i][k].end());
+        corners.tangents.insert(corners.tangents.end(), tangent.begin(), tangent.end());
     }
   }
   return corners;

@@ -28,7 +28,7 @@ struct MovedTriangles {
 
 /// The old primitive keeps the other triangles; if there are none, the new one takes its place, else it comes
 /// last in the mesh. Vertices are copied, with all their attributes and morph targets, for each place in the
-/// new coordinates. The old accessors stay, for remove_unused_accessors.
+/// new coordinates and each new tangent. The old accessors stay, for remove_unused_accessors.
 ///
 /// `model` and `geometry` (decode_geometry's) are of the document before any change to it; `document` is the
 /// changed one, in which only the part's node shows its mesh. Returns the new primitive's index. Errors:

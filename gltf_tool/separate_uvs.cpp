@@ -19,6 +19,7 @@
 #include "instances.h"
 #include "move_triangles.h"
 #include "tangent_turns.h"
+#include "tangents.h"
 #include "texel_map.h"
 #include "texture_encoding.h"
 #include "texture_slots.h"
@@ -26,6 +27,7 @@
 #include "uv_layout.h"
 #include "uv_raster.h"
 #include "uv_resample.h"
+#include "write_tangents.h"
 
 namespace applique {
 namespace {
@@ -83,7 +85,9 @@ class Separation {
       corners.push_back(std::move(old));
     }
     Tangents tangents;
-    const bool turned = turns_frames(slots, images, corners, layout);
+    const bool anisotropic = is_anisotropic(material);
+    if (anisotropic) APPLIQUE_CHECK(keep_tangents(request, layout, material, tangents));
+    const bool turned = !anisotropic && turns_frames(slots, images, corners, layout);
     for (std::size_t s = 0; s < slots.size(); ++s) {
       if (images[s].rgba.empty()) continue;
       std::vector<std::array<FrameTurn, 3>> turns;
@@ -316,6 +320,60 @@ class Separation {
     return turns;
   }
 
+  /// The direction of an anisotropy is turned by one angle against the tangents: these have to stay.
+  [[nodiscard]] bool is_anisotropic(std::size_t material) const {
+    return find(document_.json["materials"][material], {"extensions", "KHR_materials_anisotropy"}) != nullptr;
+  }
+
+  /// The coordinates that a primitive without tangents gets them from.
+  [[nodiscard]] UvMapping tangent_mapping(std::size_t material) const {
+    const auto& entry = document_.json["materials"][material];
+    const auto* texture = find(entry, {"extensions", "KHR_materials_anisotropy", "anisotropyTexture"});
+    if (texture != nullptr && find_texture_info(entry, MaterialSlot::normal) == nullptr)
+      return read_texture_mapping(*texture);
+    return read_uv_mapping(entry, MaterialSlot::normal);
+  }
+
+  /// The tangents that the old coordinates give, where the layout would turn them.
+  Result<void> keep_tangents(const LayoutRequest& request, const UvLayout& layout, std::size_t material,
+                             Tangents& tangents) {
+    const UvMapping mapping = tangent_mapping(material);
+    Image square;
+    square.width = square.height = 1;
+    APPLIQUE_TRY(const auto old, old_corners(mapping, square, request));
+    if (same_frames(old, layout.corners)) return {};
+    std::map<std::uint32_t, std::vector<std::array<Tangent, 3>>> frames;
+    for (const SeparatedTriangle& t : request.triangles) {
+      const ModelPart& part = job_.model.parts[t.part];
+      const auto [of_part, fresh] = frames.try_emplace(t.part);
+      if (fresh && part.tangents.empty()) {
+        APPLIQUE_TRY(const auto uvs, read_uvs(part, mapping));
+        APPLIQUE_TRY(const auto own, in_own_space(part, *geometry_));
+        if (own && !uvs.empty()) of_part->second = tangent_frames(*own, uvs);
+        if (!own) warn_of_anisotropy(t, material);
+      }
+      if (of_part->second.empty()) continue;
+      std::array<Tangent, 3> corners = of_part->second[t.triangle];
+      if (part.mirrored) std::swap(corners[1], corners[2]);
+      auto& kept = tangents[{t.part, t.triangle}];
+      for (std::size_t k = 0; k < 3; ++k) {
+        const Eigen::Vector3f along = corners[k].direction.cast<float>();
+        kept[k] = {along.x(), along.y(), along.z(), static_cast<float>(corners[k].sign)};
+      }
+    }
+    return {};
+  }
+
+  void warn_of_anisotropy(const SeparatedTriangle& t, std::size_t material) {
+    SolvedDecal& decal = job_.decals[t.decal];
+    decal.warnings.push_back(
+        {"anisotropy_turns",
+         fmt::format(
+             "decal '{}': the anisotropy of '{}' turns under it with the texture coordinates, because "
+             "the mesh has neither normals nor tangents; export it with normals",
+             decal.job.name, document_.json["materials"][material].value("name", std::string()))});
+  }
+
   Result<TangentFrames> read_frames(const ModelPart& part) {
     const auto& entry = geometry_->meshes[part.mesh].primitives[part.primitive];
     const std::string where = fmt::format("mesh {}, primitive {}", part.mesh, part.primitive);
@@ -350,31 +408,39 @@ class Separation {
 
   Result<std::vector<std::array<Texel, 3>>> old_corners(const UvMapping& mapping, const Image& image,
                                                         const LayoutRequest& request) {
-    std::map<std::uint32_t, std::vector<double>> uvs;
+    std::map<std::uint32_t, std::vector<std::array<double, 2>>> uvs;
     std::vector<std::array<Texel, 3>> list;
     for (const SeparatedTriangle& t : request.triangles) {
       const ModelPart& part = job_.model.parts[t.part];
-      const auto [values, fresh] = uvs.try_emplace(t.part);
+      const auto [of_part, fresh] = uvs.try_emplace(t.part);
       if (fresh) {
-        const auto& entry = geometry_->meshes[part.mesh].primitives[part.primitive];
-        const auto attribute = entry.attributes.find(fmt::format("TEXCOORD_{}", mapping.set));
-        if (attribute != entry.attributes.end()) {
-          APPLIQUE_TRY(values->second, read_accessor(*geometry_, attribute->second, 2,
-                                                     fmt::format("mesh {}, primitive {}, {}", part.mesh,
-                                                                 part.primitive, attribute->first)));
-        }
+        APPLIQUE_TRY(of_part->second, read_uvs(part, mapping));
         // Where there are no coordinates, all are 0.
-        values->second.resize(2 * part.positions.size(), 0);
+        of_part->second.resize(part.positions.size(), mapping.apply({0, 0}));
       }
       std::array<Texel, 3> corners = {};
       for (std::size_t k = 0; k < 3; ++k) {
-        const std::size_t vertex = part.triangles[t.triangle][k];
-        const auto uv = mapping.apply({values->second[2 * vertex], values->second[2 * vertex + 1]});
+        const auto& uv = of_part->second[part.triangles[t.triangle][k]];
         corners[k] = {uv[0] * image.width, uv[1] * image.height};
       }
       list.push_back(corners);
     }
     return list;
+  }
+
+  /// A part's coordinates through a mapping, by vertex; empty: none.
+  Result<std::vector<std::array<double, 2>>> read_uvs(const ModelPart& part, const UvMapping& mapping) {
+    std::vector<std::array<double, 2>> uvs;
+    const auto& entry = geometry_->meshes[part.mesh].primitives[part.primitive];
+    const auto attribute = entry.attributes.find(fmt::format("TEXCOORD_{}", mapping.set));
+    if (attribute == entry.attributes.end()) return uvs;
+    APPLIQUE_TRY(auto values, read_accessor(*geometry_, attribute->second, 2,
+                                            fmt::format("mesh {}, primitive {}, {}", part.mesh,
+                                                        part.primitive, attribute->first)));
+    values.resize(2 * part.positions.size(), 0);
+    for (std::size_t i = 0; i + 1 < values.size(); i += 2)
+      uvs.push_back(mapping.apply({values[i], values[i + 1]}));
+    return uvs;
   }
 
   Result<void> resample(const BakedSlots& slot, const Image& image, const TextureGroup& group,

@@ -35,8 +35,11 @@ struct SeparatedUvs {
 /// the mesh that they share. The job then is about the new model: its decals' surfaces refer to the new
 /// parts. Without a conflict nothing changes.
 ///
-/// Adds warnings to the decals: uv_slot_not_resampled, uv_atlas_coarser. Errors: uvs_missing, uvs_shared;
-/// those of load_model_image, encode_texture and lay_out_uvs.
+/// Tangent frames that the new coordinates would turn are turned in normal maps; where the material has an
+/// anisotropy (KHR_materials_anisotropy), the old ones are written instead.
+///
+/// Adds warnings to the decals: uv_slot_not_resampled, uv_atlas_coarser, anisotropy_turns. Errors:
+/// uvs_missing, uvs_shared; those of load_model_image, encode_texture and lay_out_uvs.
 Result<SeparatedUvs> separate_uvs(SolvedJob& job, const TextureEncoding& encoding = {});
 
 }  // namespace applique

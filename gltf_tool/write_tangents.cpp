@@ -14,24 +14,6 @@
 namespace applique {
 namespace {
 
-/// The part in its mesh's own space, wound as in the file; none if it has no normals.
-Result<std::optional<ModelPart>> in_own_space(const ModelPart& part, const tinygltf::Model& geometry) {
-  const auto& primitive = geometry.meshes[part.mesh].primitives[part.primitive];
-  if (!primitive.attributes.contains("NORMAL")) return std::nullopt;
-  ModelPart own = part;
-  const auto read = [&](const char* name) {
-    return read_accessor(geometry, primitive.attributes.at(name), 3,
-                         fmt::format("mesh {}, primitive {}, {}", part.mesh, part.primitive, name));
-  };
-  APPLIQUE_TRY(const auto positions, read("POSITION"));
-  APPLIQUE_TRY(const auto normals, read("NORMAL"));
-  own.positions = to_vectors(positions);
-  own.normals = to_vectors(normals);
-  if (part.mirrored)
-    for (auto& triangle : own.triangles) std::swap(triangle[1], triangle[2]);
-  return own;
-}
-
 /// One tangent a vertex, unit, with its sign; none where the triangles about a vertex differ in theirs.
 std::optional<std::vector<std::array<float, 4>>> tangents_by_vertex(
     const ModelPart& part, const std::vector<std::array<Tangent, 3>>& frames) {
@@ -63,6 +45,23 @@ void add_tangents(Document& document, const ModelPart& part,
 }
 
 }  // namespace
+
+Result<std::optional<ModelPart>> in_own_space(const ModelPart& part, const tinygltf::Model& geometry) {
+  const auto& primitive = geometry.meshes[part.mesh].primitives[part.primitive];
+  if (!primitive.attributes.contains("NORMAL")) return std::nullopt;
+  ModelPart own = part;
+  const auto read = [&](const char* name) {
+    return read_accessor(geometry, primitive.attributes.at(name), 3,
+                         fmt::format("mesh {}, primitive {}, {}", part.mesh, part.primitive, name));
+  };
+  APPLIQUE_TRY(const auto positions, read("POSITION"));
+  APPLIQUE_TRY(const auto normals, read("NORMAL"));
+  own.positions = to_vectors(positions);
+  own.normals = to_vectors(normals);
+  if (part.mirrored)
+    for (auto& triangle : own.triangles) std::swap(triangle[1], triangle[2]);
+  return own;
+}
 
 Result<void> write_tangents(const Model& model, std::span<const BakeTarget> targets, Document& document) {
   std::optional<tinygltf::Model> geometry;

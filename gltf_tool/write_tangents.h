@@ -1,11 +1,18 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
+
+#include <tiny_gltf.h>
 
 #include "bake_plan.h"
 
 namespace applique {
+
+/// A part in its mesh's own space, wound as in the file; none if it has no normals. `geometry` is
+/// decode_geometry's. Errors: model_invalid.
+Result<std::optional<ModelPart>> in_own_space(const ModelPart& part, const tinygltf::Model& geometry);
 
 /// Gives the primitives under targets that get a normal map their tangents, where they have none:
 /// MikkTSpace's, as the normals were turned into, so that viewers need not make their own. A primitive

@@ -2,6 +2,7 @@
 // materials with what cannot be resampled.
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 
 #include <gtest/gtest.h>
@@ -551,6 +552,84 @@ TEST_F(OddMaterialsTest, CoordinatesWithoutAnArea) {
       EXPECT_FALSE(is_red(colour_near(after, {0.6, 0.1, 0})));
       EXPECT_FALSE(is_red(colour_near(after, {0.1, 0.6, 0})));
     }
+}
+
+/// A wall with normals, whose texture coordinates are turned by 0.5 and too coarse for a decal, so that they
+/// become others; of a brushed metal.
+class AnisotropyTest : public UvSeparationTest {
+ protected:
+  void write_wall(bool normals) {
+    SmallMesh wall = make_plane("Wall", 8);
+    for (auto& uv : wall.uvs) {
+      const double u = 0.01 * (uv[0] - 0.5), v = 0.01 * (uv[1] - 0.5);
+      uv = {0.5 + std::cos(0.5) * u + std::sin(0.5) * v, 0.5 - std::sin(0.5) * u + std::cos(0.5) * v};
+    }
+    if (normals) wall.normals.assign(wall.positions.size(), Vec3::UnitZ());
+    write_model({wall});
+    edit_model([](Document& document) {
+      document.json["materials"][0]["extensions"]["KHR_materials_anisotropy"] = {{"anisotropyStrength", 0.8},
+                                                                                 {"anisotropyRotation", 0.7}};
+      document.json["extensionsUsed"] = {"KHR_materials_anisotropy"};
+    });
+  }
+
+  static const ModelPart& separated(const Model& model) { return model.parts.back(); }
+
+  static void expect_tangents(const Model& model, const Vec3& along) {
+    ASSERT_EQ(separated(model).tangents.size(), separated(model).positions.size());
+    for (const Tangent& tangent : separated(model).tangents) {
+      EXPECT_LT((tangent.direction - along).norm(), 1e-3);
+      EXPECT_EQ(tangent.sign, 1);
+    }
+  }
+};
+
+TEST_F(AnisotropyTest, KeepsItsDirection) {
+  write_wall(true);
+  const json report = bake(job_at(0, 0));
+  ASSERT_TRUE(report.is_object());
+  EXPECT_GT(report["textures"][0]["separated_triangles"], 0);
+  EXPECT_EQ(report["decals"][0]["warnings"], json::array());
+  const Model after = load("out.glb");
+  // Along the old u, seen with y up.
+  expect_tangents(after, {std::cos(0.5), -std::sin(0.5), 0});
+  const auto& material = after.document.json["materials"][*separated(after).material];
+  EXPECT_EQ(material["extensions"]["KHR_materials_anisotropy"]["anisotropyRotation"], 0.7);
+}
+
+TEST_F(AnisotropyTest, WithAReliefAndTangents) {
+  for (const bool tangents : {false, true}) {
+    SCOPED_TRACE(tangents);
+    write_wall(true);
+    const Vec3 along = tangents ? Vec3(0, 1, 0) : Vec3(std::cos(0.5), -std::sin(0.5), 0);
+    edit_model([&](Document& document) {
+      Image relief = make_image(16, 16, {204 * 257, 128 * 257, 230 * 257, 0xffff});
+      relief.channels = 3;
+      document.json["materials"][0]["normalTexture"]["index"] = add_texture(document, relief);
+      if (!tangents) return;
+      std::vector<double> values;
+      for (int i = 0; i < 81; ++i) values.insert(values.end(), {0, 1, 0, 1});
+      const std::size_t accessor =
+          add_accessor(document, {{"componentType", 5126}, {"type", "VEC4"}}, values, 4, false, 34962);
+      document.json["meshes"][0]["primitives"][0]["attributes"]["TANGENT"] = accessor;
+    });
+    bake(job_at(0, 0));
+    const Model after = load("out.glb");
+    expect_tangents(after, along);
+    const auto normal = after.document.json["materials"][*separated(after).material]["normalTexture"]["index"]
+                            .get<std::size_t>();
+    const Image relief =
+        load_model_image(after, after.document.json["textures"][normal]["source"].get<std::size_t>()).value();
+    for (std::size_t i = 0; i < relief.rgba.size(); ++i) ASSERT_EQ(relief.rgba[i], relief.rgba[i % 4]);
+    EXPECT_EQ(relief.rgba[0], 204 * 257) << "in the frames that it was made for";
+  }
+}
+
+TEST_F(AnisotropyTest, WithoutNormalsIsWarnedOf) {
+  write_wall(false);
+  const json report = bake(job_at(0, 0));
+  ASSERT_EQ(report["decals"][0]["warnings"].size(), 1u);
+  EXPECT_EQ(report["decals"][0]["warnings"][0]["code"], "anisotropy_turns");
 }
 
 }  // namespace
