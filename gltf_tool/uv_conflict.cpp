@@ -190,19 +190,20 @@ std::string slot_names(const UvFinding& finding) {
 std::string reason_of(const SolvedJob& job, const TextureGroup& group, const UvFinding& finding) {
   const std::size_t all = finding.triangles.size();
   const std::string part = finding.in_conflict == all ? "" : fmt::format("{} of ", finding.in_conflict);
-  const std::string where =
-      fmt::format("{}its {} triangles on {}", part, all, quoted_name(job.model, group.material));
+  const std::string where = fmt::format("{}its {} {} on {}", part, all, all == 1 ? "triangle" : "triangles",
+                                        quoted_name(job.model, group.material));
+  const char* have = finding.in_conflict == 1 ? "has" : "have";
   switch (finding.trouble) {
     case UvTrouble::missing:
-      return fmt::format("{}, of {}, have no texture coordinates ({})", where, mesh_name(job, finding),
+      return fmt::format("{}, of {}, {} no texture coordinates ({})", where, mesh_name(job, finding), have,
                          slot_names(finding));
     case UvTrouble::shared:
-      return fmt::format("{} have texels that are shown by other triangles too ({} of {}; {})", where,
+      return fmt::format("{} {} texels that are shown by other triangles too ({} of {}; {})", where, have,
                          finding.shared_texels, finding.covered_texels, slot_names(finding));
     case UvTrouble::coarse:
       break;
   }
-  return fmt::format("{} have texture coordinates that are too coarse for it ({})", where,
+  return fmt::format("{} {} texture coordinates that are too coarse for it ({})", where, have,
                      slot_names(finding));
 }
 

@@ -46,7 +46,7 @@ Result<UvCheck> check_uvs(SolvedJob& job) {
 
 CLI::App* add_check_command(CLI::App& app, CheckArguments& arguments) {
   CLI::App* command =
-      add_subcommand(app, "check", "Solve the geometry of a job without baking it",
+      add_subcommand(app, "check", "Solve the geometry of a job and find UV conflicts, without baking it",
                      "  applique check job.json\n"
                      "  applique check job.json --report report.json --dump-region regions.json\n"
                      "  applique check job.json --suggest");

@@ -106,6 +106,18 @@ void UvConflictTest::expect_same_look(json job) {
   EXPECT_LT(difference.largest, 2);
 }
 
+namespace {
+
+/// The most that two pictures differ, in steps of 1/255.
+double largest_difference(const Image& a, const Image& b) {
+  int largest = 0;
+  for (std::size_t i = 0; i < a.rgba.size(); ++i)
+    largest = std::max(largest, std::abs(int{a.rgba[i]} - int{b.rgba[i]}));
+  return largest / 257.0;
+}
+
+}  // namespace
+
 double UvConflictTest::picture_difference(const std::string& before, const std::string& after, int azimuth) {
   Image pictures[2];
   for (int i = 0; i < 2; ++i) {
@@ -115,10 +127,18 @@ double UvConflictTest::picture_difference(const std::string& before, const std::
     EXPECT_EQ(result.status, 0) << result.err;
     pictures[i] = read_image(folder_ / "picture.png").value();
   }
-  int largest = 0;
-  for (std::size_t i = 0; i < pictures[0].rgba.size(); ++i)
-    largest = std::max(largest, std::abs(int(pictures[0].rgba[i]) - int(pictures[1].rgba[i])));
-  return largest / 257.0;
+  return largest_difference(pictures[0], pictures[1]);
+}
+
+double UvConflictTest::difference_close_up(json job) {
+  Image pictures[2];
+  for (const bool after : {false, true}) {
+    // An overlay of nothing leaves the model as it was, before the same camera.
+    for (json& decal : job["decals"]) decal.update({{"opacity", 0}, {"output", after ? "bake" : "overlay"}});
+    bake(job, "close_up.glb", "--preview close_up.png");
+    pictures[after ? 1 : 0] = read_image(folder_ / "close_up.png").value();
+  }
+  return largest_difference(pictures[0], pictures[1]);
 }
 
 void UvConflictTest::expect_valid(const std::string& output) {

@@ -59,6 +59,10 @@ class UvConflictTest : public testing::Test {
   /// The most that two pictures differ, in steps of 1/255, of the models seen from an angle.
   double picture_difference(const std::string& before, const std::string& after, int azimuth);
 
+  /// The same of the model without the decal and with one that is separated but unseen, so near that no mip
+  /// levels are shown.
+  double difference_close_up(nlohmann::json job);
+
   /// Nothing that the validator says of the output is new.
   void expect_valid(const std::string& output);
 

@@ -294,6 +294,7 @@ struct RealModel {
 /// Third-party models with every kind of conflict: the look stays, the decal comes, the files are valid.
 TEST_F(UvConflictTest, ThirdPartyModels) {
   if (test_data().empty()) GTEST_SKIP() << no_test_data;
+  write_png(folder_ / "small.png", make_image(16, 16, {0xffff, 0, 0, 0xffff}));
   for (const RealModel& real :
        {RealModel{"Duck.glb", {0.5, 1.3, 3}, {0, 0, -1}, {0, 1, 0}, 0.35},
         RealModel{"BoxTexturedNonPowerOfTwo.glb", {0.1, 0.05, 3}, {0, 0, -1}, {0, 1, 0}, 0.5},
@@ -316,6 +317,22 @@ TEST_F(UvConflictTest, ThirdPartyModels) {
     job["decals"][0]["features"][0]["ray"] = {{"origin", list(real.origin)},
                                               {"direction", list(real.direction)}};
     expect_same_look(job);
+    // So near that every texel is seen. Of the finely woven cloth, llvmpipe's anisotropic filter takes other
+    // texels at single pixels; without it, the most is 3.
+    json near = job;
+    near["decals"][0]["size"] = real.size / 4;
+    const bool woven = real.file == std::string("SheenCloth.glb");
+    EXPECT_LE(difference_close_up(near), woven ? 27 : 2);
+    // From afar mip levels are seen. Those of a texture whose sides are no powers of two depend on where its
+    // texels lie. (Those of one that is made finer for the decal, as this one is not, lie between the old
+    // ones.)
+    json coarse = job;
+    coarse["decals"][0].update({{"image", "small.png"}, {"opacity", 0}});
+    coarse["decals"][0]["features"][0]["image"] = {8, 8};
+    bake(coarse, "coarse.glb");
+    const bool odd_sides = real.file == std::string("BoxTexturedNonPowerOfTwo.glb");
+    for (const int azimuth : {0, 90})
+      EXPECT_LE(picture_difference("model.glb", "coarse.glb", azimuth), odd_sides ? 13 : 4) << azimuth;
     const json report = bake(job);
     ASSERT_TRUE(report.is_object());
     for (const auto& texture : report["textures"]) EXPECT_EQ(texture["shared_texels"], 0);

@@ -1,5 +1,6 @@
 #include "applique/gpu/renderer.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include <gtest/gtest.h>
@@ -60,6 +61,34 @@ TEST_F(RendererTest, PutsTheTextureTheRightWayUp) {
   EXPECT_EQ(strongest(picture, 140, 60), 1);
   EXPECT_EQ(strongest(picture, 60, 140), 2);
   EXPECT_EQ(strongest(picture, 140, 140), -1);
+}
+
+/// Waves, whose period is the twentieth of a side.
+Image waves(int size) {
+  Image image = make_image(size, size, {0, 0, 0, full});
+  for (int y = 0; y < size; ++y)
+    for (int x = 0; x < size; ++x) {
+      const double wave = std::sin(40 * 3.14159265 * (x + 0.7 * y + 0.85) / size);
+      std::fill_n(image.pixel(x, y), 3, static_cast<std::uint16_t>(std::lround(full * (0.5 + 0.4 * wave))));
+    }
+  return image;
+}
+
+TEST_F(RendererTest, InterpolatesTexturesOfAnySize) {
+  const Image fine = waves(1024), odd = waves(211);
+  for (const float shift : {0.0F, 3.0F}) {
+    std::array<Image, 2> pictures;
+    for (int i = 0; i < 2; ++i) {
+      std::vector<RenderMesh> meshes = {square(i == 0 ? &fine : &odd)};
+      for (auto& uv : meshes[0].uvs) uv[0] += shift;
+      pictures[i] = render(device(), meshes, front(), {600, 600}).value();
+    }
+    int largest = 0;
+    for (std::size_t i = 0; i < pictures[0].rgba.size(); ++i)
+      largest = std::max(largest, std::abs(int{pictures[0].rgba[i]} - int{pictures[1].rgba[i]}));
+    // What bilinear interpolation loses of a wave of 10 texels, and a little more: 12 of 255.
+    EXPECT_LT(largest / 257.0, 16) << shift;
+  }
 }
 
 TEST_F(RendererTest, HidesWhatIsBehind) {

@@ -164,7 +164,23 @@ VkSamplerAddressMode address_mode(WrapMode mode) {
   return VK_SAMPLER_ADDRESS_MODE_REPEAT;
 }
 
-Result<DeviceObject<VkSampler>> make_sampler(const Device& device, WrapMode u, WrapMode v) {
+bool has_odd_sides(const Image* image) {
+  const auto is_odd = [](int side) { return !std::has_single_bit(static_cast<unsigned>(side)); };
+  return image != nullptr && (is_odd(image->width) || is_odd(image->height));
+}
+
+// Whether the device's anisotropic filter may show the meshes. Mesa's llvmpipe takes the wrong texels of
+// textures whose sides are no powers of two: edges become stairs even where it magnifies them. Without it for
+// one, then without it for all: surface looks the same through either.
+bool filters_anisotropically(const Device& device, std::span<const RenderMesh> meshes) {
+  return device.properties().deviceType != VK_PHYSICAL_DEVICE_TYPE_CPU ||
+         std::none_of(meshes.begin(), meshes.end(), [](const RenderMesh& mesh) {
+           return has_odd_sides(mesh.base_colour) || has_odd_sides(mesh.metallic_roughness) ||
+                  has_odd_sides(mesh.normal) || has_odd_sides(mesh.emissive);
+         });
+}
+
+Result<DeviceObject<VkSampler>> make_sampler(const Device& device, WrapMode u, WrapMode v, bool anisotropic) {
   VkPhysicalDeviceFeatures features;
   vkGetPhysicalDeviceFeatures(device.handles().physical, &features);
   VkSamplerCreateInfo info{VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO};
@@ -174,7 +190,7 @@ Result<DeviceObject<VkSampler>> make_sampler(const Device& device, WrapMode u, W
   info.addressModeU = address_mode(u);
   info.addressModeV = address_mode(v);
   info.addressModeW = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE;
-  info.anisotropyEnable = features.samplerAnisotropy;
+  info.anisotropyEnable = anisotropic ? features.samplerAnisotropy : VK_FALSE;
   info.maxAnisotropy = std::min(8.0F, device.properties().limits.maxSamplerAnisotropy);
   info.maxLod = VK_LOD_CLAMP_NONE;
   DeviceObject<VkSampler> sampler;
@@ -322,11 +338,12 @@ Result<Descriptors> make_descriptors(const Device& device, std::span<const Rende
 
   const Image white = make_image(1, 1, {65535, 65535, 65535, 65535});
   const RenderMesh plain;
+  const bool anisotropic = filters_anisotropically(device, meshes);
   for (std::size_t i = 0; i < count; ++i) {
     const RenderMesh& mesh = i < meshes.size() ? meshes[i] : plain;
     DeviceObject<VkSampler>& sampler = result.samplers[{mesh.wrap_u, mesh.wrap_v}];
     if (sampler.get() == VK_NULL_HANDLE) {
-      APPLIQUE_TRY(sampler, make_sampler(device, mesh.wrap_u, mesh.wrap_v));
+      APPLIQUE_TRY(sampler, make_sampler(device, mesh.wrap_u, mesh.wrap_v, anisotropic));
     }
     const VkDescriptorBufferInfo buffer{frame.handle(), 0, VK_WHOLE_SIZE};
     const std::array<std::pair<const Image*, VkFormat>, texture_count> wanted = {
