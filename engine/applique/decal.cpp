@@ -39,7 +39,9 @@ constexpr double hardly_stretched = 1.1;      // L2, of a map to which there is 
 constexpr double much_stretched = 1.1;        // L2
 constexpr double usual_margin = 0.08;         // of a patch's faces
 constexpr double nearly_all = 0.99;           // of the region
-constexpr double little_regard = 0.1;         // for the surface beyond the image
+constexpr double some_regard = 0.3;           // for the surface beyond the image
+constexpr double little_regard = 0.1;         // for it, where all is much stretched
+constexpr double less_isometry = 0.6;         // where all is
 constexpr double most_coverage = 1.005;       // beyond it a map overlaps itself
 constexpr double refreshed = 1e-5;            // of the region's diameter: what a last refresh moves
 
@@ -132,9 +134,10 @@ bool may_stretch_elsewhere(const DecalMap& map) {
 
 /// What is taken for granted in an attempt at a decal.
 struct Attempt {
-  Crossings crossings;  ///< What paths are that cross on the surface.
-  bool grouping;        ///< Whether features may move the image in groups.
-  double beyond = 1;    ///< How much the surface beyond the image counts in the last embeddings.
+  Crossings crossings;          ///< What paths are that cross on the surface.
+  bool grouping;                ///< Whether features may move the image in groups.
+  Energy energy;                ///< Of the grown patch.
+  double beyond = some_regard;  ///< How much the surface beyond the image counts in the last embeddings.
 };
 
 /// One decal in the making: the state that the growth's iterations share.
@@ -202,7 +205,7 @@ class Solver {
       // The last embedding, undone to the surface's scale, is where an isometric one may start from.
       std::vector<Vec2> start;
       for (const PatchPoint& point : points_) start.push_back(point.plane / scale_);
-      const std::vector<PlacedPoint> guide = options_.guide && groups_.count == 1
+      const std::vector<PlacedPoint> guide = options_.guide && !options.rough && groups_.count == 1
                                                  ? placed_features(disc, growth, scale_)
                                                  : std::vector<PlacedPoint>();
       const std::vector<double> weights = options.rough ? std::vector<double>() : weights_of(disc);
@@ -222,9 +225,8 @@ class Solver {
     return {};
   }
 
-  /// How much the triangles count: those beyond the image less than others, if the attempt says so.
+  /// How much the triangles count: those beyond the image less than others.
   [[nodiscard]] std::vector<double> weights_of(const ImmersedDisc& disc) const {
-    if (attempt_.beyond == 1) return {};
     std::vector<double> weights;
     for (const PatchFace& face : disc.faces()) {
       const auto& v = face.vertices;
@@ -384,8 +386,8 @@ class Solver {
       if (static_cast<double>(added + peeled) <= settled) {
         // Thin patches mislead: what they say of the features' order counts once the patch is grown.
         if (mirrored_) return fail_mirrored(input_);
-        if (energy != options_.energy) {
-          energy = options_.energy;
+        if (energy != attempt_.energy) {
+          energy = attempt_.energy;
         } else if (padded) {
           break;
         } else if (may_cover_more(disc, growth)) {
@@ -700,16 +702,18 @@ Result<DecalMap> solve_decal(const SurfaceMesh& surface, const DecalInput& input
   };
   // Paths that cross on the surface may mean that the image lies over itself there, or that features were
   // moved past one another in one sheet: what comes out tells.
-  attempt({Crossings::one_sheet, true}, sounder);
+  attempt({Crossings::one_sheet, true, options.energy}, sounder);
   if (crossed && !(map && is_sound(*map) && map->quality.l2_stretch < hardly_stretched))
-    attempt({Crossings::overlap, true}, sounder);
+    attempt({Crossings::overlap, true, options.energy}, sounder);
   // Parts that only touch in the plane, not on the surface: without groups it may go with fewer folds.
   if (map && map->groups > 1 && map->sheets == 1 && folds(*map) > 0)
-    attempt({Crossings::one_sheet, false},
+    attempt({Crossings::one_sheet, false, options.energy},
             [](const DecalMap& a, const DecalMap& b) { return folds(a) < folds(b); });
-  // Where all is much stretched, what the image does not show may be stretched instead.
+  // Where all is much stretched, what the image does not show may be stretched instead; and lengths that
+  // cannot be kept lead the growth less astray when they count less.
   if (map && options.energy != Energy::conformal && may_stretch_elsewhere(*map))
-    attempt({crossed && map->sheets > 1 ? Crossings::overlap : Crossings::one_sheet, true, little_regard},
+    attempt({crossed && map->sheets > 1 ? Crossings::overlap : Crossings::one_sheet, true,
+             Energy{less_isometry * options.energy.isometry}, little_regard},
             sounder);
   if (options.trace != nullptr) *options.trace = std::move(trace);
   return map;
