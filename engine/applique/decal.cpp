@@ -39,9 +39,10 @@ constexpr double hardly_stretched = 1.1;      // L2, of a map to which there is 
 constexpr double much_stretched = 1.1;        // L2
 constexpr double usual_margin = 0.08;         // of a patch's faces
 constexpr double nearly_all = 0.99;           // of the region
-constexpr double some_regard = 0.3;           // for the surface beyond the image
-constexpr double little_regard = 0.1;         // for it, where all is much stretched
-constexpr double less_isometry = 0.6;         // where all is
+constexpr double hardly_any = 0.005;          // of a patch's faces
+constexpr int last_embeddings = 2;            // after the first of the final patch
+constexpr double little_regard = 0.1;         // for the surface beyond the image
+constexpr double less_isometry = 0.6;         // where all is much stretched
 constexpr double most_coverage = 1.005;       // beyond it a map overlaps itself
 constexpr double refreshed = 1e-5;            // of the region's diameter: what a last refresh moves
 
@@ -134,10 +135,9 @@ bool may_stretch_elsewhere(const DecalMap& map) {
 
 /// What is taken for granted in an attempt at a decal.
 struct Attempt {
-  Crossings crossings;          ///< What paths are that cross on the surface.
-  bool grouping;                ///< Whether features may move the image in groups.
-  Energy energy;                ///< Of the grown patch.
-  double beyond = some_regard;  ///< How much the surface beyond the image counts in the last embeddings.
+  Crossings crossings;  ///< What paths are that cross on the surface.
+  bool grouping;        ///< Whether features may move the image in groups.
+  Energy energy;        ///< Of the grown patch.
 };
 
 /// One decal in the making: the state that the growth's iterations share.
@@ -208,9 +208,9 @@ class Solver {
       const std::vector<PlacedPoint> guide = options_.guide && !options.rough && groups_.count == 1
                                                  ? placed_features(disc, growth, scale_)
                                                  : std::vector<PlacedPoint>();
-      const std::vector<double> weights = options.rough ? std::vector<double>() : weights_of(disc);
+      weights_ = options.rough ? std::vector<double>() : weights_of(disc);
       Embedding embedding =
-          embed_disc(measure_disc(disc), {options.energy, options.rough, guide, weights}, start);
+          embed_disc(measure_disc(disc), {options.energy, options.rough, guide, weights_}, start);
       rung_ = embedding.rung;
       plane = std::move(embedding.plane);
       for (std::size_t k = 0; k < features.size(); ++k)
@@ -232,9 +232,18 @@ class Solver {
       const auto& v = face.vertices;
       const bool shown =
           input_.region.meets_triangle(points_[v[0]].image, points_[v[1]].image, points_[v[2]].image);
-      weights.push_back(shown ? 1 : attempt_.beyond);
+      weights.push_back(shown ? 1 : little_regard);
     }
     return weights;
+  }
+
+  /// Whether the image shows other triangles than those that counted in the last embedding.
+  [[nodiscard]] bool shows_others(const ImmersedDisc& disc) const {
+    const std::vector<double> weights = weights_of(disc);
+    std::size_t others = 0;
+    for (std::size_t q = 0; q < weights.size(); ++q)
+      others += q >= weights_.size() || weights[q] != weights_[q];
+    return static_cast<double>(others) > hardly_any * static_cast<double>(weights.size());
   }
 
   /// The features in the disc's triangles, and their places in the image at `scale` plane units to one.
@@ -401,6 +410,8 @@ class Solver {
       growth.compact(points_);
       APPLIQUE_ASSERT(!checks_patch(options_) || disc.broken_invariant().empty());
     }
+    for (int k = 0; k < last_embeddings && energy != Energy::conformal && shows_others(disc); ++k)
+      APPLIQUE_CHECK(parameterize(disc, growth, {energy, false}));
     map_.status = growth.coverage(points_);
     return {};
   }
@@ -648,6 +659,7 @@ class Solver {
   std::vector<std::uint32_t> field_groups_;        ///< What influence_field_ was made of, be it one group.
   std::optional<InfluenceField> influence_field_;  ///< Of groups_, while there are several.
   std::vector<double> influence_;                  ///< [vertex * groups + group], while there are several.
+  std::vector<double> weights_;  ///< By triangle, in the last embedding; empty: all the same.
   EmbeddingRung rung_ = EmbeddingRung::conformal;
   std::size_t unfolded_ = 0;             ///< Triangles that were turned over before unfold().
   std::vector<std::uint32_t> at_fault_;  ///< Features that force a fold.
@@ -713,7 +725,7 @@ Result<DecalMap> solve_decal(const SurfaceMesh& surface, const DecalInput& input
   // cannot be kept lead the growth less astray when they count less.
   if (map && options.energy != Energy::conformal && may_stretch_elsewhere(*map))
     attempt({crossed && map->sheets > 1 ? Crossings::overlap : Crossings::one_sheet, true,
-             Energy{less_isometry * options.energy.isometry}, little_regard},
+             Energy{less_isometry * options.energy.isometry}},
             sounder);
   if (options.trace != nullptr) *options.trace = std::move(trace);
   return map;
