@@ -60,8 +60,8 @@ class UvConflictTest : public testing::Test {
   double picture_difference(const std::string& before, const std::string& after, int azimuth);
 
   /// The same of the model without the decal and with one that is separated but unseen, so near that no mip
-  /// levels are shown.
-  double difference_close_up(nlohmann::json job);
+  /// levels are shown; but for a share of the pixels.
+  double difference_close_up(nlohmann::json job, double ignored);
 
   /// Nothing that the validator says of the output is new.
   void expect_valid(const std::string& output);
