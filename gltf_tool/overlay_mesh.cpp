@@ -338,16 +338,4 @@ double default_offset(const Model& model) {
   return 0.0005 * model.diagonal();
 }
 
-Image overlay_image(const SolvedDecal& decal) {
-  Image image = decal.image;
-  image.channels = 4;
-  const DecalImage cut = make_decal_image(decal.image, decal.region);
-  for (int y = 0; y < image.height; ++y)
-    for (int x = 0; x < image.width; ++x) {
-      const double alpha = cut.texels[static_cast<std::size_t>(y) * image.width + x][3] * decal.job.opacity;
-      image.pixel(x, y)[3] = static_cast<std::uint16_t>(std::lround(std::clamp(alpha, 0.0, 1.0) * 0xffff));
-    }
-  return image;
-}
-
 }  // namespace applique

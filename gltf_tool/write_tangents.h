@@ -4,6 +4,7 @@
 #include <span>
 
 #include "bake_plan.h"
+#include "overlay.h"
 
 namespace applique {
 
@@ -13,5 +14,10 @@ namespace applique {
 /// surfaces that the texture shows mirrored against one another has no one tangent: such primitives stay
 /// without. `document` has the targets' materials. Errors: those of load_model.
 Result<void> write_tangents(const Model& model, std::span<const BakeTarget> targets, Document& document);
+
+/// Gives an overlay MikkTSpace's tangents. It stays without where its node mirrors, since viewers differ in
+/// whether the sign holds in the mesh's space or in the scene, but agree by themselves; and where a part of
+/// the decal is turned over against another.
+void make_tangents(OverlayMesh& overlay);
 
 }  // namespace applique

@@ -10,6 +10,7 @@
 
 #include "cli/command.h"
 #include "cli/small_model.h"
+#include "overlay_layers.h"
 #include "overlay_layout.h"
 #include "solve_job.h"
 
@@ -49,6 +50,9 @@ class OverlayMeshTest : public testing::Test {
   }
 
   const SolvedDecal& decal() const { return job_.decals.front(); }
+  Image base_colour() {
+    return make_overlay_layers(job_.model, job_.decals.front()).value().pictures.front().image;
+  }
 
   CommandFolder folder_;
   SolvedJob job_;
@@ -196,6 +200,7 @@ TEST_F(OverlayMeshTest, OnASkinTrianglesStayWholeAndThePictureIsBent) {
   job_.model.document.json["nodes"][0]["skin"] = 0;
   job_.decals.front().image = make_ramp();
   const OverlayLayout layout = lay_out_overlay(job_.model, decal(), 0.01);
+  const Image picture = draw_picture(layout.chart, base_colour(), Encoding::colour);
   EXPECT_FALSE(layout.divided_skin);
   const DecalMap& map = decal().map;
   EXPECT_EQ(layout.mesh.triangles.size(), std::count(map.textured.begin(), map.textured.end(), char(1)));
@@ -216,14 +221,14 @@ TEST_F(OverlayMeshTest, OnASkinTrianglesStayWholeAndThePictureIsBent) {
       const Pixel exact = decal().region.frame().to_pixel(map.warp(plane));
       if (std::min(exact.x, exact.y) < 2 || std::max(exact.x, exact.y) > image_size - 2) continue;
       const std::uint16_t* texel =
-          layout.picture.pixel(int(uv.real() * layout.picture.width), int(uv.imag() * layout.picture.height));
+          picture.pixel(int(uv.real() * picture.width), int(uv.imag() * picture.height));
       EXPECT_NEAR(texel[0] / 257.0, exact.x - 0.5, 1);
       EXPECT_NEAR(texel[1] / 257.0, exact.y - 0.5, 1);
       EXPECT_EQ(texel[3], 0x8000) << "the decal's opacity";
       ++compared;
     }
   EXPECT_GT(compared, 500);
-  EXPECT_EQ(layout.picture.pixel(0, 0)[3], 0) << "nothing around it";
+  EXPECT_EQ(picture.pixel(0, 0)[3], 0) << "nothing around it";
 }
 
 TEST_F(OverlayMeshTest, OnASkinAnImageThatLiesOverItselfIsDivided) {
@@ -234,11 +239,11 @@ TEST_F(OverlayMeshTest, OnASkinAnImageThatLiesOverItselfIsDivided) {
   map.influence.assign(2 * map.patch.vertices.size(), 0.5);
   const OverlayLayout layout = lay_out_overlay(job_.model, decal(), 0.01);
   EXPECT_TRUE(layout.divided_skin);
-  EXPECT_EQ(layout.picture.width, image_size);
+  EXPECT_EQ(layout.chart.width, image_size);
 }
 
 TEST_F(OverlayMeshTest, PictureCarriesTheOpacity) {
-  const Image image = overlay_image(decal());
+  const Image image = base_colour();
   EXPECT_EQ(image.channels, 4);
   EXPECT_EQ(image.pixel(128, 128)[3], 0x8000);
   EXPECT_EQ(image.pixel(128, 128)[0], decal().image.pixel(128, 128)[0]);
