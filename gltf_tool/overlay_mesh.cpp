@@ -277,7 +277,12 @@ void cut_at_image_border(Builder& mesh, const ImageFrame& frame) {
   for (const Vec2 inward : {Vec2(1, 0), Vec2(-1, 0), Vec2(0, 1), Vec2(0, -1)}) {
     const double extent = inward.imag() == 0 ? half_width : half_height;
     std::vector<double> distance(mesh.image.size());
-    for (std::size_t i = 0; i < distance.size(); ++i) distance[i] = extent + dot(inward, mesh.image[i]);
+    for (std::size_t i = 0; i < distance.size(); ++i) {
+      distance[i] = extent + dot(inward, mesh.image[i]);
+      // Else rounding would leave slivers where the border runs along edges, whose texture has no direction.
+      constexpr double nothing = 1e-9;
+      if (std::abs(distance[i]) < nothing) distance[i] = 0;
+    }
     BorderCut(mesh, std::move(distance)).run();
   }
 }
