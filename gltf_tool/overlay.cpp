@@ -168,12 +168,11 @@ void place_node(Document& document, const OverlayMesh& overlay, std::size_t adde
     if (!overlay.targets.empty() && followed.contains("weights"))
       nodes[added]["weights"] = followed["weights"];
     if (overlay.influences_per_vertex == 0) {
+      if (overlay.mirrored) nodes[added]["scale"] = {-1, 1, 1};
       nodes[*overlay.node]["children"].push_back(added);
       return;
     }
     nodes[added]["skin"] = followed["skin"];
-    // Viewers go by the node all the same to tell the outside from the inside.
-    if (overlay.mirrored) nodes[added]["scale"] = {-1, 1, 1};
   }
   if (count_of(document, "scenes") != 0)
     document.json["scenes"][index_of(document.json, "scene").value_or(0)]["nodes"].push_back(added);

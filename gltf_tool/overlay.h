@@ -18,14 +18,17 @@ namespace applique {
 /// The part of a decal that lies on one node, as triangles of its own.
 struct OverlayMesh {
   std::optional<std::size_t> node;  ///< The node it moves with; none: it stays where the scene is at rest.
-  std::vector<Vec3> positions;      ///< In the space of the node's mesh, or in scene space.
+  std::vector<Vec3> positions;      ///< In the space of the node's mesh, or in scene space. By `mirrored`.
   std::vector<Vec3> normals;        ///< Unit, likewise.
   std::vector<std::array<double, 2>> uvs;  ///< In the pictures: [0, 1] and around it, v down.
   /// As glTF stores them; empty: none, and viewers make them.
   std::vector<std::array<float, 4>> tangents;
   std::vector<std::array<std::uint32_t, 3>>
-      triangles;          ///< At least one; winding as in the node's mesh, counter-clockwise without a node.
-  bool mirrored = false;  ///< The node mirrors.
+      triangles;  ///< At least one; counter-clockwise seen from outside.
+  /// The node mirrors what it moves. Its overlay has x turned over, in a node that turns it back: so nothing
+  /// is mirrored, and tangents mean the same to all viewers. A skin moves its vertices without the node.
+  bool mirrored = false;
+  bool joints_mirror = false;             ///< Where viewers differ in what the sign of a tangent means.
   std::size_t influences_per_vertex = 0;  ///< A multiple of 4; 0: no skin.
   std::vector<Influence> influences;  ///< By vertex, the heaviest first; the weights sum to 1, or are all 0.
   std::vector<MorphTarget> targets;   ///< As many as the node's mesh has.

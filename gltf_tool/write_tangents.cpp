@@ -68,7 +68,7 @@ Result<void> write_tangents(const Model& model, std::span<const BakeTarget> targ
 }
 
 void make_tangents(OverlayMesh& overlay) {
-  if (overlay.mirrored) return;
+  if (overlay.joints_mirror) return;
   ModelPart part;
   part.positions = overlay.positions;
   part.normals = overlay.normals;

@@ -15,9 +15,9 @@ namespace applique {
 /// without. `document` has the targets' materials. Errors: those of load_model.
 Result<void> write_tangents(const Model& model, std::span<const BakeTarget> targets, Document& document);
 
-/// Gives an overlay MikkTSpace's tangents. It stays without where its node mirrors, since viewers differ in
-/// whether the sign holds in the mesh's space or in the scene, but agree by themselves; and where a part of
-/// the decal is turned over against another.
+/// Gives an overlay MikkTSpace's tangents. It stays without where its joints mirror, since viewers differ in
+/// whether a sign holds in the mesh's space or in the scene, but agree where they make their own; and where a
+/// part of the decal is turned over against another.
 void make_tangents(OverlayMesh& overlay);
 
 }  // namespace applique
