@@ -231,6 +231,38 @@ TEST_F(OverlayMeshTest, OnASkinTrianglesStayWholeAndThePictureIsBent) {
   EXPECT_EQ(picture.pixel(0, 0)[3], 0) << "nothing around it";
 }
 
+TEST_F(OverlayMeshTest, NormalsTurnWhereThePictureIsBent) {
+  job_.model.document.json["nodes"][0]["skin"] = 0;
+  const OverlayLayout layout = lay_out_overlay(job_.model, decal(), 0.01);
+  const Vec3 relief = Vec3(0.6, 0.3, 0.8).normalized();
+  std::array<std::uint16_t, 4> stored = {0, 0, 0, 65535};
+  for (int c = 0; c < 3; ++c)
+    stored[c] = static_cast<std::uint16_t>(std::lround(65535 * (0.5 + 0.5 * relief[c])));
+  const Image picture =
+      draw_picture(layout.chart, make_image(image_size, image_size, stored), Encoding::normal);
+  // Where a step along the image's x comes from is the direction of that x in the picture.
+  const ImageFrame& frame = decal().region.frame();
+  const auto place_of = [&](Pixel pixel) {
+    return frame.to_pixel(decal().map.warp.backward(frame.to_plane(pixel)));
+  };
+  double least = 10, most = -10;
+  for (double y = 20; y < image_size; y += 31)
+    for (double x = 20; x < image_size; x += 31) {
+      const Pixel from = place_of({x, y}), to = place_of({x + 0.5, y});
+      const Vec2 along = Vec2(to.x - from.x, from.y - to.y) / std::hypot(to.x - from.x, from.y - to.y);
+      const Vec2 shown = Vec2(relief.x(), relief.y()) * along;
+      const Eigen::Vector2d texel =
+          layout.chart.density * (Eigen::Vector2d(from.x, from.y) - layout.chart.origin);
+      const std::uint16_t* normal = picture.pixel(int(texel.x()), int(texel.y()));
+      EXPECT_NEAR(normal[0] / 65535.0, 0.5 + 0.5 * shown.real(), 0.01);
+      EXPECT_NEAR(normal[1] / 65535.0, 0.5 + 0.5 * shown.imag(), 0.01);
+      EXPECT_NEAR(normal[2] / 65535.0, 0.5 + 0.5 * relief.z(), 1e-4);
+      least = std::min(least, std::arg(along));
+      most = std::max(most, std::arg(along));
+    }
+  EXPECT_GT(most - least, 0.2) << "it is bent";
+}
+
 TEST_F(OverlayMeshTest, OnASkinAnImageThatLiesOverItselfIsDivided) {
   job_.model.document.json["nodes"][0]["skin"] = 0;
   DecalMap& map = job_.decals.front().map;
