@@ -52,7 +52,7 @@ Result<void> write_tangents(const Model& model, std::span<const BakeTarget> targ
     if (target.slot != MaterialSlot::normal || has_texture(model, target)) continue;
     for (const std::uint32_t index : target.parts) {
       const ModelPart& part = model.parts[index];
-      if (!part.tangents.empty()) continue;
+      if (!part.tangents.empty() || part.mirrored) continue;
       if (!geometry) {
         APPLIQUE_TRY(const Buffers buffers, read_buffers(model.document));
         APPLIQUE_TRY(geometry, decode_geometry(model.document, buffers));
