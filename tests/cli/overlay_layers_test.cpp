@@ -462,6 +462,9 @@ TEST_F(OverlayLook, IsThatOfABake) {
     if (node_mirrored)
       edit_model([](Document& document) { document.json["nodes"][0]["scale"] = {-1, 1, 1}; });
     const Image baked = preview("bake", mirrored, layers);
+    const json meshes = load_document(folder_ / "out.glb").value().json["meshes"];
+    EXPECT_EQ(meshes[0]["primitives"][0]["attributes"].contains("TANGENT"), !node_mirrored)
+        << "viewers do not agree on their sign";
     const Image overlaid = preview("overlay", mirrored, layers);
     expect_valid("out.glb");
     const auto [mean, largest] = difference(baked, overlaid);
