@@ -258,8 +258,8 @@ Result<void> store_textures(std::vector<TargetWork>& works, const TextureEncodin
   return {};
 }
 
-/// Draws, encodes and names the pictures of an overlay.
-Result<OverlayMaterial> make_material(const SolvedDecal& decal, const OverlayLayers& layers,
+/// Draws and encodes the pictures of an overlay.
+Result<OverlayMaterial> make_material(const SolvedDecal& decal, OverlayLayers layers,
                                       const OverlayChart& chart, const TextureEncoding& encoding,
                                       BakedJob& baked) {
   OverlayMaterial material;
@@ -267,14 +267,14 @@ Result<OverlayMaterial> make_material(const SolvedDecal& decal, const OverlayLay
   material.roughness = layers.roughness;
   material.emissive = layers.emissive;
   for (const DecalLayer& layer : decal.job.layers) material.layers.push_back(layer.name);
+  const std::vector<OverlayPicture> pictures = draw_pictures(chart, std::move(layers.pictures));
   std::vector<std::future<Result<EncodedTexture>>> textures;
-  textures.reserve(layers.pictures.size());
-  for (const auto& [slot, image] : layers.pictures)
-    textures.push_back(std::async(std::launch::async, [&chart, &image, &encoding, slot] {
-      return encode_texture(draw_picture(chart, image, encoding_of(slot)), encoding);
-    }));
+  textures.reserve(pictures.size());
+  for (const OverlayPicture& picture : pictures)
+    textures.push_back(
+        std::async(std::launch::async, [&] { return encode_texture(picture.image, encoding); }));
   for (std::size_t i = 0; i < textures.size(); ++i) {
-    const MaterialSlot slot = layers.pictures[i].slot;
+    const MaterialSlot slot = pictures[i].slot;
     APPLIQUE_TRY(EncodedTexture encoded, textures[i].get());
     warn_of_format(baked, fmt::format("the {} texture of the overlay '{}'", name_of(slot), decal.job.name),
                    encoded);
@@ -293,8 +293,9 @@ Result<void> add_overlays(SolvedJob& job, const TextureEncoding& encoding, Baked
       return fail(ErrorCode::not_solved,
                   fmt::format("decal '{}': none of the image lies on the surface", decal.job.name));
     APPLIQUE_TRY(auto overlays, attach_overlay(job.model, decal, mesh));
-    APPLIQUE_TRY(const OverlayLayers layers, make_overlay_layers(job.model, decal));
-    APPLIQUE_TRY(const OverlayMaterial shown, make_material(decal, layers, chart, encoding, baked));
+    APPLIQUE_TRY(OverlayLayers layers, make_overlay_layers(job.model, decal));
+    APPLIQUE_TRY(const OverlayMaterial shown,
+                 make_material(decal, std::move(layers), chart, encoding, baked));
     const std::size_t material = add_overlay_material(baked.document, decal.job.name, shown);
     for (OverlayMesh& overlay : overlays) {
       if (shown.textures.contains(MaterialSlot::normal)) make_tangents(overlay);

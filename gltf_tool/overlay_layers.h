@@ -4,23 +4,18 @@
 #include <vector>
 
 #include "applique/base/error.h"
-#include "applique/image/image.h"
 
-#include "material.h"
 #include "model.h"
+#include "overlay_layout.h"
 #include "solve_job.h"
 
 namespace applique {
 
-/// A texture of an overlay's material, in the frame of the decal's image, of its size or a single texel.
-struct OverlayPicture {
-  MaterialSlot slot = MaterialSlot::base_color;
-  Image image;
-};
-
 /// What an overlay's material is made of.
 struct OverlayLayers {
-  std::vector<OverlayPicture> pictures;        ///< The base colour's first, with the alpha of all.
+  /// The base colour's first, with the alpha of all. In the frame of the decal's image, of its size or a
+  /// single texel.
+  std::vector<OverlayPicture> pictures;
   double metallic = 0;                         ///< 1 beside a picture that has it.
   double roughness = 1;                        ///< Likewise.
   std::array<double, 3> emissive = {0, 0, 0};  ///< Linear light; likewise.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include <Eigen/Geometry>
 
@@ -80,32 +81,38 @@ std::array<std::uint16_t, 4> sample(const Image& image, const Eigen::Vector2d& p
   return {stored(colour.x()), stored(colour.y()), stored(colour.z()), stored(alpha)};
 }
 
-Eigen::Vector2d in_image(const OverlayChart& chart, const Eigen::Vector2d& place) {
-  if (chart.warp == nullptr) return place;
-  return in_pixels(chart.frame, (*chart.warp)(chart.frame.to_plane({place.x(), place.y()})));
+/// Where the image is at the centres of a row of the chart's texels, in pixels, and at one more.
+std::vector<Eigen::Vector2d> places_of_row(const OverlayChart& chart, std::size_t y) {
+  std::vector<Eigen::Vector2d> places;
+  for (int x = 0; x <= chart.width; ++x) {
+    const Eigen::Vector2d place =
+        chart.origin + Eigen::Vector2d(x + 0.5, static_cast<double>(y) + 0.5) / chart.density;
+    places.push_back(
+        chart.warp == nullptr
+            ? place
+            : in_pixels(chart.frame, (*chart.warp)(chart.frame.to_plane({place.x(), place.y()}))));
+  }
+  return places;
 }
 
-/// The directions of the image's x and y at a place of the picture, unit vectors, y up in both; y a quarter
-/// turn from x.
-std::array<compositing::vec2, 2> axes_at(const OverlayChart& chart, const Eigen::Vector2d& place) {
-  constexpr double step = 1e-3;  // pixels
-  const Eigen::Vector2d here = in_image(chart, place);
-  const Eigen::Vector2d by_x = in_image(chart, place + Eigen::Vector2d(step, 0)) - here;
-  const Eigen::Vector2d by_y = in_image(chart, place + Eigen::Vector2d(0, step)) - here;
-  // The first column of the inverse Jacobian, with y turned up.
+/// Turns a stored normal from the image's frame into the picture's; the image moves by so much from texel to
+/// texel.
+void turn_normal(const Eigen::Vector2d& by_x, const Eigen::Vector2d& by_y, std::uint16_t* texel) {
+  // Along the image's x, with y up in both: the first column of the inverse Jacobian.
   const double turn = by_x.x() * by_y.y() - by_x.y() * by_y.x() < 0 ? -1 : 1;
   const double x = turn * by_y.y(), y = turn * by_x.y(), length = std::hypot(x, y);
-  if (length == 0) return {{{1, 0}, {0, 1}}};
-  return {{{x / length, y / length}, {-turn * y / length, turn * x / length}}};
-}
-
-/// Turns a stored normal from the image's frame into the picture's.
-void turn_normal(const OverlayChart& chart, const Eigen::Vector2d& place, std::uint16_t* texel) {
-  const auto [along, across] = axes_at(chart, place);
+  if (length == 0) return;
+  const compositing::vec2 along(x / length, y / length), across(-turn * along.y, turn * along.x);
   const compositing::vec4 own(texel[0] / 65535.0, texel[1] / 65535.0, texel[2] / 65535.0, 1);
   const compositing::vec4 turned =
       compositing::composite_normal(compositing::blend_normal, own, own, along, across);
   for (int c = 0; c < 3; ++c) texel[c] = static_cast<std::uint16_t>(std::lround(65535 * turned[c]));
+}
+
+/// Whether an image is its own picture.
+bool shows_itself(const OverlayChart& chart, const Image& image) {
+  const bool single = image.width == 1 && image.height == 1;
+  return single || (chart.warp == nullptr && image.width == chart.width && image.height == chart.height);
 }
 
 /// Texture coordinates of whole faces: their vertices' places in the chart.
@@ -133,23 +140,45 @@ OverlayLayout lay_out_overlay(const Model& model, const SolvedDecal& decal, doub
   return {std::move(whole), chart, false};
 }
 
-Image draw_picture(const OverlayChart& chart, const Image& image, Encoding encoding) {
-  const bool single = image.width == 1 && image.height == 1;
-  const bool whole = chart.warp == nullptr && image.width == chart.width && image.height == chart.height;
-  if (single || whole) return image;
-  Image picture = make_image(chart.width, chart.height, {0, 0, 0, 65535});
-  picture.channels = image.channels;
-  picture.bits = image.bits;
-  parallel_for(chart.height, [&](int y) {
-    for (int x = 0; x < chart.width; ++x) {
-      const Eigen::Vector2d place = chart.origin + Eigen::Vector2d(x + 0.5, y + 0.5) / chart.density;
-      const auto sampled = sample(image, in_image(chart, place));
-      std::uint16_t* texel = picture.pixel(x, y);
-      std::copy_n(sampled.begin(), image.has_alpha() ? 4 : 3, texel);
-      if (encoding == Encoding::normal && chart.warp != nullptr) turn_normal(chart, place, texel);
+std::vector<OverlayPicture> draw_pictures(const OverlayChart& chart, std::vector<OverlayPicture> images) {
+  std::vector<OverlayPicture> pictures;
+  bool drawn = false;
+  for (auto& [slot, image] : images) {
+    if (shows_itself(chart, image)) {
+      pictures.push_back({slot, image});
+      continue;
     }
-  });
-  return picture;
+    drawn = true;
+    Image picture = make_image(chart.width, chart.height, {0, 0, 0, 65535});
+    picture.channels = image.channels;
+    picture.bits = image.bits;
+    pictures.push_back({slot, std::move(picture)});
+  }
+  if (!drawn) return pictures;
+  const auto draw_row = [&](int y, const auto& here, const auto& below) {
+    for (std::size_t i = 0; i < images.size(); ++i) {
+      auto& [slot, picture] = pictures[i];
+      if (shows_itself(chart, images[i].image)) continue;
+      for (int x = 0; x < chart.width; ++x) {
+        const auto k = static_cast<std::size_t>(x);
+        std::uint16_t* texel = picture.pixel(x, y);
+        std::copy_n(sample(images[i].image, here[k]).begin(), picture.has_alpha() ? 4 : 3, texel);
+        if (slot == MaterialSlot::normal && chart.warp != nullptr)
+          turn_normal(here[k + 1] - here[k], below[k] - here[k], texel);
+      }
+    }
+  };
+  constexpr std::size_t rows_at_once = 32;
+  parallel_ranges(static_cast<std::size_t>(chart.height), rows_at_once,
+                  [&](std::size_t first, std::size_t last) {
+                    auto here = places_of_row(chart, first);
+                    for (std::size_t y = first; y < last; ++y) {
+                      auto below = places_of_row(chart, y + 1);
+                      draw_row(static_cast<int>(y), here, below);
+                      here = std::move(below);
+                    }
+                  });
+  return pictures;
 }
 
 }  // namespace applique

@@ -1,17 +1,25 @@
 #pragma once
 
+#include <vector>
+
 #include <Eigen/Core>
 
 #include "applique/image/image.h"
 #include "applique/image/image_frame.h"
-#include "applique/transfer/transfer.h"
 #include "applique/warp/warp.h"
 
+#include "material.h"
 #include "model.h"
 #include "overlay_mesh.h"
 #include "solve_job.h"
 
 namespace applique {
+
+/// What an overlay shows in a slot of its material.
+struct OverlayPicture {
+  MaterialSlot slot = MaterialSlot::base_color;
+  Image image;
+};
 
 /// How an overlay's pictures show the decal's image: their texel (x, y) shows the place `origin` + (x, y) /
 /// `density`, in pixels of the image, or, where it is bent, of the plane that the warp carries to the image.
@@ -42,10 +50,10 @@ struct OverlayLayout {
 /// The layout points into the decal.
 OverlayLayout lay_out_overlay(const Model& model, const SolvedDecal& decal, double offset);
 
-/// Lays `image`, in the decal's frame and of its size, out as a picture; one of a single texel stays one.
-/// Outside the image it is transparent, with the colours of the border, if it has an alpha. Normals are
+/// Lays images, in the decal's frame and of its size, out as pictures; one of a single texel stays one.
+/// Outside the image they are transparent, with the colours of the border, if they have an alpha. Normals are
 /// turned with the image where that is bent: by the direction in the picture in which the image's x runs at
 /// each texel, as a bake turns them into a texture's frames.
-Image draw_picture(const OverlayChart& chart, const Image& image, Encoding encoding);
+std::vector<OverlayPicture> draw_pictures(const OverlayChart& chart, std::vector<OverlayPicture> images);
 
 }  // namespace applique

@@ -50,6 +50,9 @@ class OverlayMeshTest : public testing::Test {
   }
 
   const SolvedDecal& decal() const { return job_.decals.front(); }
+  static Image draw(const OverlayLayout& layout, MaterialSlot slot, const Image& image) {
+    return draw_pictures(layout.chart, {{slot, image}}).front().image;
+  }
   Image base_colour() {
     return make_overlay_layers(job_.model, job_.decals.front()).value().pictures.front().image;
   }
@@ -200,7 +203,7 @@ TEST_F(OverlayMeshTest, OnASkinTrianglesStayWholeAndThePictureIsBent) {
   job_.model.document.json["nodes"][0]["skin"] = 0;
   job_.decals.front().image = make_ramp();
   const OverlayLayout layout = lay_out_overlay(job_.model, decal(), 0.01);
-  const Image picture = draw_picture(layout.chart, base_colour(), Encoding::colour);
+  const Image picture = draw(layout, MaterialSlot::base_color, base_colour());
   EXPECT_FALSE(layout.divided_skin);
   const DecalMap& map = decal().map;
   EXPECT_EQ(layout.mesh.triangles.size(), std::count(map.textured.begin(), map.textured.end(), char(1)));
@@ -238,8 +241,7 @@ TEST_F(OverlayMeshTest, NormalsTurnWhereThePictureIsBent) {
   std::array<std::uint16_t, 4> stored = {0, 0, 0, 65535};
   for (int c = 0; c < 3; ++c)
     stored[c] = static_cast<std::uint16_t>(std::lround(65535 * (0.5 + 0.5 * relief[c])));
-  const Image picture =
-      draw_picture(layout.chart, make_image(image_size, image_size, stored), Encoding::normal);
+  const Image picture = draw(layout, MaterialSlot::normal, make_image(image_size, image_size, stored));
   // Where a step along the image's x comes from is the direction of that x in the picture.
   const ImageFrame& frame = decal().region.frame();
   const auto place_of = [&](Pixel pixel) {
