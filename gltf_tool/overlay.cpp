@@ -189,7 +189,7 @@ std::size_t add_overlay_material(Document& document, const std::string& decal,
   for (const auto& [slot, bytes] : material.textures) {
     const bool base = slot == MaterialSlot::base_color;
     const std::size_t image =
-        add_image(document, bytes, base ? decal : fmt::format("{} {}", decal, name_of(slot)));
+        add_image(document, bytes, base ? decal : fmt::format("{}-{}", decal, name_of(slot)));
     const std::size_t texture = add_to(document, "textures", {{"sampler", sampler}});
     show_image(document, texture, image);
     const bool in_pbr = base || slot == MaterialSlot::metallic_roughness;

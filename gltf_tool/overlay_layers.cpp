@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <optional>
 #include <set>
+#include <span>
 
 #include <fmt/format.h>
 
@@ -104,6 +105,17 @@ void warn_of_blend(SolvedDecal& decal, const DecalLayer& layer, const char* why)
                                     decal.job.name, name_of(layer.blend), layer.name, why)});
 }
 
+/// Whether a layer lets much through where the decal is seen: more than its edge.
+bool is_transparent(const Image& values, std::span<const std::uint16_t> shown) {
+  constexpr double much = 0.02;
+  double seen = 0, through = 0;
+  for (std::size_t i = 0; i < shown.size(); ++i) {
+    seen += shown[i];
+    through += shown[i] * (1 - values.rgba[4 * i + 3] / 65535.0);
+  }
+  return through > much * seen;
+}
+
 /// Composes an overlay's slots but for the base colour.
 class Slots {
  public:
@@ -174,7 +186,8 @@ class Slots {
     picture.channels = 3;
     for (const std::size_t i : own) {
       APPLIQUE_TRY(const Image values, layers_->values(i));
-      warn_of_ground(ground, layer(i), has_transparency(values));
+      APPLIQUE_TRY(const auto shown, layers_->alpha());
+      warn_of_ground(ground, layer(i), is_transparent(values, shown));
       draw(layer(i), blend_over(ground, layer(i)), ground, values, picture);
       picture.bits = std::max(picture.bits, values.bits);
     }

@@ -199,6 +199,26 @@ TEST_F(OverlayLayers, AGroundThatIsNotOneValueIsWarnedOf) {
   EXPECT_NE(blends[1].find("\"add\" of its normal"), std::string::npos) << blends[1];
 }
 
+TEST_F(OverlayLayers, ATransparentLayerIsWarnedOfWhereItIsSeen) {
+  add_ground_texture("metallicRoughnessTexture");
+  Image gloss = plain_image(image_size, {0.25, 0, 0});
+  gloss.channels = 4;
+  for (int y = 0; y < image_size; ++y)
+    for (int x = 0; x < image_size / 2; ++x) gloss.pixel(x, y)[3] = 0;
+  write_png(folder_ / "gloss.png", gloss);
+  json job = overlay_job({{"roughness", "gloss.png"}});
+  bake_material(job);
+  EXPECT_EQ(warnings("overlay_ground_unknown").size(), 1u);
+  // Where the mask hides the decal, nothing is let through.
+  Image mask = gloss;
+  for (std::size_t i = 0; i < mask.rgba.size(); i += 4)
+    mask.rgba[i] = mask.rgba[i + 1] = mask.rgba[i + 2] = 65535;
+  write_png(folder_ / "mask.png", mask);
+  job["decals"][0]["mask"] = "mask.png";
+  bake_material(job);
+  EXPECT_TRUE(warnings("overlay_ground_unknown").empty());
+}
+
 TEST_F(OverlayLayers, BlendModesOfTheColourAreWarnedOf) {
   for (const std::string mode : {"multiply", "erase", "luminosity"}) {
     json job = overlay_job(json::object());
