@@ -84,7 +84,7 @@ struct DecalJob {
   PlanarLimits planar;                ///< Of Method::planar.
   Parents parents = Parents::upwind;  ///< Of Method::expmap.
   Energy energy = Energy::isometric;
-  bool guide = false;  ///< As SolveOptions::guide.
+  bool guide = true;  ///< As SolveOptions::guide.
   Overlap overlap = Overlap::stop;
 };
 

@@ -39,7 +39,10 @@ constexpr double hardly_stretched = 1.1;      // L2, of a map to which there is 
 constexpr double much_stretched = 1.1;        // L2
 constexpr double usual_margin = 0.08;         // of a patch's faces
 constexpr double nearly_all = 0.99;           // of the region
+constexpr double hardly_any = 0.005;          // of a patch's faces
+constexpr int last_embeddings = 2;            // after the first of the final patch
 constexpr double little_regard = 0.1;         // for the surface beyond the image
+constexpr double less_isometry = 0.6;         // where all is much stretched
 constexpr double most_coverage = 1.005;       // beyond it a map overlaps itself
 constexpr double refreshed = 1e-5;            // of the region's diameter: what a last refresh moves
 
@@ -134,7 +137,7 @@ bool may_stretch_elsewhere(const DecalMap& map) {
 struct Attempt {
   Crossings crossings;  ///< What paths are that cross on the surface.
   bool grouping;        ///< Whether features may move the image in groups.
-  double beyond = 1;    ///< How much the surface beyond the image counts in the last embeddings.
+  Energy energy;        ///< Of the grown patch.
 };
 
 /// One decal in the making: the state that the growth's iterations share.
@@ -202,12 +205,12 @@ class Solver {
       // The last embedding, undone to the surface's scale, is where an isometric one may start from.
       std::vector<Vec2> start;
       for (const PatchPoint& point : points_) start.push_back(point.plane / scale_);
-      const std::vector<PlacedPoint> guide = options_.guide && groups_.count == 1
+      const std::vector<PlacedPoint> guide = options_.guide && !options.rough && groups_.count == 1
                                                  ? placed_features(disc, growth, scale_)
                                                  : std::vector<PlacedPoint>();
-      const std::vector<double> weights = options.rough ? std::vector<double>() : weights_of(disc);
+      weights_ = options.rough ? std::vector<double>() : weights_of(disc);
       Embedding embedding =
-          embed_disc(measure_disc(disc), {options.energy, options.rough, guide, weights}, start);
+          embed_disc(measure_disc(disc), {options.energy, options.rough, guide, weights_}, start);
       rung_ = embedding.rung;
       plane = std::move(embedding.plane);
       for (std::size_t k = 0; k < features.size(); ++k)
@@ -222,17 +225,25 @@ class Solver {
     return {};
   }
 
-  /// How much the triangles count: those beyond the image less than others, if the attempt says so.
+  /// How much the triangles count: those beyond the image less than others.
   [[nodiscard]] std::vector<double> weights_of(const ImmersedDisc& disc) const {
-    if (attempt_.beyond == 1) return {};
     std::vector<double> weights;
     for (const PatchFace& face : disc.faces()) {
       const auto& v = face.vertices;
       const bool shown =
           input_.region.meets_triangle(points_[v[0]].image, points_[v[1]].image, points_[v[2]].image);
-      weights.push_back(shown ? 1 : attempt_.beyond);
+      weights.push_back(shown ? 1 : little_regard);
     }
     return weights;
+  }
+
+  /// Whether the image shows other triangles than those that counted in the last embedding.
+  [[nodiscard]] bool shows_others(const ImmersedDisc& disc) const {
+    const std::vector<double> weights = weights_of(disc);
+    std::size_t others = 0;
+    for (std::size_t q = 0; q < weights.size(); ++q)
+      others += q >= weights_.size() || weights[q] != weights_[q];
+    return static_cast<double>(others) > hardly_any * static_cast<double>(weights.size());
   }
 
   /// The features in the disc's triangles, and their places in the image at `scale` plane units to one.
@@ -384,8 +395,8 @@ class Solver {
       if (static_cast<double>(added + peeled) <= settled) {
         // Thin patches mislead: what they say of the features' order counts once the patch is grown.
         if (mirrored_) return fail_mirrored(input_);
-        if (energy != options_.energy) {
-          energy = options_.energy;
+        if (energy != attempt_.energy) {
+          energy = attempt_.energy;
         } else if (padded) {
           break;
         } else if (may_cover_more(disc, growth)) {
@@ -399,6 +410,8 @@ class Solver {
       growth.compact(points_);
       APPLIQUE_ASSERT(!checks_patch(options_) || disc.broken_invariant().empty());
     }
+    for (int k = 0; k < last_embeddings && energy != Energy::conformal && shows_others(disc); ++k)
+      APPLIQUE_CHECK(parameterize(disc, growth, {energy, false}));
     map_.status = growth.coverage(points_);
     return {};
   }
@@ -646,6 +659,7 @@ class Solver {
   std::vector<std::uint32_t> field_groups_;        ///< What influence_field_ was made of, be it one group.
   std::optional<InfluenceField> influence_field_;  ///< Of groups_, while there are several.
   std::vector<double> influence_;                  ///< [vertex * groups + group], while there are several.
+  std::vector<double> weights_;  ///< By triangle, in the last embedding; empty: all the same.
   EmbeddingRung rung_ = EmbeddingRung::conformal;
   std::size_t unfolded_ = 0;             ///< Triangles that were turned over before unfold().
   std::vector<std::uint32_t> at_fault_;  ///< Features that force a fold.
@@ -700,16 +714,18 @@ Result<DecalMap> solve_decal(const SurfaceMesh& surface, const DecalInput& input
   };
   // Paths that cross on the surface may mean that the image lies over itself there, or that features were
   // moved past one another in one sheet: what comes out tells.
-  attempt({Crossings::one_sheet, true}, sounder);
+  attempt({Crossings::one_sheet, true, options.energy}, sounder);
   if (crossed && !(map && is_sound(*map) && map->quality.l2_stretch < hardly_stretched))
-    attempt({Crossings::overlap, true}, sounder);
+    attempt({Crossings::overlap, true, options.energy}, sounder);
   // Parts that only touch in the plane, not on the surface: without groups it may go with fewer folds.
   if (map && map->groups > 1 && map->sheets == 1 && folds(*map) > 0)
-    attempt({Crossings::one_sheet, false},
+    attempt({Crossings::one_sheet, false, options.energy},
             [](const DecalMap& a, const DecalMap& b) { return folds(a) < folds(b); });
-  // Where all is much stretched, what the image does not show may be stretched instead.
+  // Where all is much stretched, what the image does not show may be stretched instead; and lengths that
+  // cannot be kept lead the growth less astray when they count less.
   if (map && options.energy != Energy::conformal && may_stretch_elsewhere(*map))
-    attempt({crossed && map->sheets > 1 ? Crossings::overlap : Crossings::one_sheet, true, little_regard},
+    attempt({crossed && map->sheets > 1 ? Crossings::overlap : Crossings::one_sheet, true,
+             Energy{less_isometry * options.energy.isometry}},
             sounder);
   if (options.trace != nullptr) *options.trace = std::move(trace);
   return map;

@@ -59,8 +59,8 @@ enum class Overlap {
 struct SolveOptions {
   Method method = Method::applique;
   Energy energy = Energy::isometric;  ///< The paper's method is always conformal.
-  bool guide =
-      false;  ///< Draws the embedding to the features, which leaves less to the warp; isometric only.
+  /// Draws the last embedding to the features, which leaves less to the warp; not a conformal one.
+  bool guide = true;
   Overlap overlap = Overlap::stop;
   PlanarLimits planar;                ///< Of Method::planar.
   Parents parents = Parents::upwind;  ///< Of Method::expmap.

@@ -9,7 +9,7 @@
 #include "applique/embed/arap.h"
 #include "applique/embed/boundary_first.h"
 #include "applique/embed/mean_value.h"
-#include "applique/embed/symmetric_dirichlet.h"
+#include "applique/embed/least_stretch.h"
 
 #include "support/shapes.h"
 
@@ -127,24 +127,24 @@ TEST(Tutte, TurnsNothingOver) {
 }
 
 /// The circle is far from the rectangle that the disc is, and close to folding at the corners.
-TEST(SymmetricDirichlet, FindsTheIsometryOfAPlane) {
+TEST(LeastStretch, FindsTheIsometryOfAPlane) {
   const Disc d(shapes::plane(12, 9, 2, 1, 0.3));
   const DiscGeometry geometry = measure_disc(d.disc);
   const std::vector<Vec2> plane =
-      relax_symmetric_dirichlet(geometry, embed_on_circle(geometry), {1, 1000, 1e-13});
+      relax_stretch(geometry, embed_on_circle(geometry), {1, 1000, 1e-13});
   EXPECT_EQ(count_flips(geometry, plane), 0u);
   EXPECT_LT(length_error(geometry, plane), 1e-4);
 }
 
-TEST(SymmetricDirichlet, LeavesAFoldedStartAsItIs) {
+TEST(LeastStretch, LeavesAFoldedStartAsItIs) {
   const Disc d(shapes::plane(4, 4, 1, 1, 0));
   const DiscGeometry geometry = measure_disc(d.disc);
   std::vector<Vec2> folded = flatten_boundary_first(geometry);
   for (Vec2& z : folded) z = std::conj(z);
-  EXPECT_EQ(relax_symmetric_dirichlet(geometry, folded), folded);
+  EXPECT_EQ(relax_stretch(geometry, folded), folded);
 }
 
-TEST(SymmetricDirichlet, KeepsWhatCountsMoreNearerToItsShape) {
+TEST(LeastStretch, KeepsWhatCountsMoreNearerToItsShape) {
   const Disc bump(shapes::bump(24, 0.8, 0.3));
   const DiscGeometry geometry = measure_disc(bump.disc);
   // The left half counts ten times as much.
@@ -167,10 +167,10 @@ TEST(SymmetricDirichlet, KeepsWhatCountsMoreNearerToItsShape) {
     return sum;
   };
   const std::vector<Vec2> start = embed_on_circle(geometry);
-  SymmetricDirichletOptions options;
-  const auto evenly = relax_symmetric_dirichlet(geometry, start, options);
+  StretchOptions options;
+  const auto evenly = relax_stretch(geometry, start, options);
   options.weights = weights;
-  const auto weighted = relax_symmetric_dirichlet(geometry, start, options);
+  const auto weighted = relax_stretch(geometry, start, options);
   EXPECT_EQ(count_flips(geometry, weighted), 0U);
   EXPECT_LT(error_on_the_left(weighted), 0.8 * error_on_the_left(evenly));
 }

@@ -5,8 +5,8 @@
 
 #include "applique/embed/arap.h"
 #include "applique/embed/boundary_first.h"
+#include "applique/embed/least_stretch.h"
 #include "applique/embed/mean_value.h"
-#include "applique/embed/symmetric_dirichlet.h"
 
 namespace applique {
 namespace {
@@ -24,16 +24,16 @@ void scale_to_area(const DiscGeometry& disc, std::vector<Vec2>& plane) {
   for (Vec2& z : plane) z *= scale;
 }
 
-constexpr double rough_tolerance = 1e-3;
+constexpr double rough_tolerance = 1e-3, fine_tolerance = 1e-4;
 
 Embedding descend(const DiscGeometry& disc, const EmbedOptions& options, const std::vector<Vec2>& start,
                   std::span<const PlacedPoint> guide = {}) {
-  SymmetricDirichletOptions descent;
+  StretchOptions descent;
   descent.guide = guide;
   descent.weights = options.weights;
   descent.isometry = options.energy.isometry;
-  if (options.rough) descent.tolerance = rough_tolerance;
-  Embedding embedding{relax_symmetric_dirichlet(disc, start, descent), EmbeddingRung::isometric, 0};
+  descent.tolerance = options.rough ? rough_tolerance : fine_tolerance;
+  Embedding embedding{relax_stretch(disc, start, descent), EmbeddingRung::isometric, 0};
   embedding.flips = count_flips(disc, embedding.plane);
   return embedding;
 }

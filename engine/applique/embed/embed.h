@@ -8,8 +8,7 @@
 
 namespace applique {
 
-/// What an embedding keeps: 0 angles only, 1 lengths as well, between them a blend
-/// (relax_symmetric_dirichlet).
+/// What an embedding keeps: 0 angles only, 1 lengths as well, between them a blend (relax_stretch).
 struct Energy {
   double isometry = 1;
 
@@ -45,7 +44,7 @@ struct EmbedOptions {
 /// Embeds the disc in the plane with a free boundary (§5.1 of the paper; §4.2 and §4.3 of the design):
 /// conformal, and from there down to the isometric map; turned-over triangles are looked for after each
 /// solve. The paper stops at the conformal map. The design goes on by ARAP, which folds on strongly curved
-/// discs; the symmetric Dirichlet energy does not.
+/// discs; the descent does not.
 ///
 /// `start`, when given, is an embedding of the disc's own scale that the isometric descent may begin at; one
 /// that turns triangles over is not used.

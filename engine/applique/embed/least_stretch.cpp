@@ -1,4 +1,4 @@
-#include "applique/embed/symmetric_dirichlet.h"
+#include "applique/embed/least_stretch.h"
 
 #include <algorithm>
 #include <cmath>
@@ -21,27 +21,26 @@ std::vector<RestTriangle> rest_triangles(const DiscGeometry& disc) {
 }
 
 /// The energy of a unit of area, by how a triangle's map stretches it: the mean square of its two stretches,
-/// and their product `det` > 0. Isometric: the L2 stretch of the map and that of its inverse, each of which
-/// least when areas are kept as well as angles; conformal: of the one stretch over the other, and back.
+/// and their product `det` > 0.
 struct Distortion {
   double isometry;
 
   EnergyDensity operator()(double mean_square, double det) const {
     if (!(det > 0)) return {std::numeric_limits<double>::infinity(), 0, 0};
-    const double inverse = 1 / det, conformity = 2 * (1 - isometry);
-    return {isometry * (mean_square * (1 + inverse * inverse) + det + inverse) +
-                conformity * mean_square * inverse,
-            isometry * (1 + inverse * inverse) + conformity * inverse,
-            isometry * (1 - inverse * inverse - 2 * mean_square * inverse * inverse * inverse) -
-                conformity * mean_square * inverse * inverse};
+    const double inverse = 1 / det, square = inverse * inverse, conformity = 2 * (1 - isometry);
+    return {isometry * (mean_square * square + det) + conformity * mean_square * inverse,
+            isometry * square + conformity * inverse,
+            isometry * (1 - 2 * mean_square * square * inverse) - conformity * mean_square * square};
   }
 };
 
 /// How stiff a triangle is along a stretch `s`: the slope of the energy's parts there over s - 1.
 double stiffness(double s, double across, double isometry) {
   const double inverse = 1 / s;
-  return isometry * (1 + inverse) * (1 + inverse + inverse * inverse) + 2 * (1 - isometry) * inverse / across;
+  return isometry * inverse * (1 + inverse + inverse * inverse) + 2 * (1 - isometry) * inverse / across;
 }
+
+constexpr double guide_strength = 100;
 
 // Draws points of the disc to their targets.
 class Guide {
@@ -51,7 +50,7 @@ class Guide {
     double spread = 0;
     for (const PlacedPoint& point : points) middle += point.target / static_cast<double>(points.size());
     for (const PlacedPoint& point : points) spread += std::norm(point.target - middle);
-    weight_ = spread > 0 ? disc.area / spread : 0;
+    weight_ = spread > 0 ? guide_strength * disc.area / spread : 0;
   }
 
   // Adds its part to the gradient.
@@ -158,8 +157,8 @@ class WeightedLaplacian {
 
 }  // namespace
 
-std::vector<Vec2> relax_symmetric_dirichlet(const DiscGeometry& disc, const std::vector<Vec2>& plane,
-                                            const SymmetricDirichletOptions& options) {
+std::vector<Vec2> relax_stretch(const DiscGeometry& disc, const std::vector<Vec2>& plane,
+                                const StretchOptions& options) {
   constexpr double sufficient = 1e-4;  // Armijo
   constexpr int most_halvings = 12;
   constexpr int most_steps = 10;    // on one Laplacian
