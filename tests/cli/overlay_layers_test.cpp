@@ -439,6 +439,7 @@ class OverlayLook : public OverlayLayers {
                  {{{"name", "crest"},
                    {"image", "image.png"},
                    {"output", output},
+                   {"energy", "conformal"},
                    {"mirrored", mirrored},
                    {"layers", layers},
                    {"features",
@@ -474,7 +475,7 @@ TEST_F(OverlayLook, IsThatOfABake) {
   // On a skin of large triangles it is the pictures that are bent.
   for (const auto& [cells, skin, node_mirrored, mirrored] :
        {Case{40, false, false, false}, Case{40, false, false, true}, Case{40, false, true, false},
-        Case{6, true, false, false}, Case{6, true, false, true}}) {
+        Case{10, true, false, false}, Case{10, true, false, true}}) {
     SCOPED_TRACE(testing::Message() << cells << ", skin " << skin << ", node mirrored " << node_mirrored
                                     << ", mirrored " << mirrored);
     write_hill(cells);
@@ -487,9 +488,11 @@ TEST_F(OverlayLook, IsThatOfABake) {
         << "viewers do not agree on their sign";
     const Image overlaid = preview("overlay", mirrored, layers);
     expect_valid("out.glb");
+    EXPECT_EQ(texture_of(output(), "crest").width > 2 * size, skin) << "bent, and finer for it";
     const auto [mean, largest] = difference(baked, overlaid);
-    EXPECT_LT(mean, 0.7);
-    EXPECT_LT(largest, 6);
+    // A bake turns relief face by face: large ones show at its highlights. Unturned, the mean would be 1.
+    EXPECT_LT(mean, skin ? 0.7 : 0.3);
+    EXPECT_LT(largest, skin ? 10 : 4);
     RecordProperty("mean", std::to_string(mean));
     RecordProperty("largest", std::to_string(largest));
     if (skin || mirrored) continue;  // Every layer is seen: twice is enough.

@@ -21,7 +21,8 @@ namespace {
 
 constexpr int image_size = 256;
 
-/// The image on a plane of few, large triangles, bent strongly by features that no similarity fits.
+/// The image on a plane of few, large triangles, bent strongly by features that no similarity fits; all by
+/// the warp, since the conformal embedding of a plane is one.
 class OverlayMeshTest : public testing::Test {
  protected:
   void SetUp() override {
@@ -39,6 +40,7 @@ class OverlayMeshTest : public testing::Test {
           json::array({{{"name", "bent"},
                         {"image", "image.png"},
                         {"opacity", 0.5},
+                        {"energy", "conformal"},
                         {"features",
                          {pin(64, 64, -0.3, 0.25), pin(192, 64, 0.25, 0.2), pin(128, 128, 0.06, -0.03),
                           pin(64, 192, -0.25, -0.25), pin(192, 192, 0.25, -0.3)}}}})}});
