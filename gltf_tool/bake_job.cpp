@@ -259,7 +259,7 @@ Result<void> store_textures(std::vector<TargetWork>& works, const TextureEncodin
 }
 
 /// Draws and encodes the pictures of an overlay.
-Result<OverlayMaterial> make_material(const SolvedDecal& decal, OverlayLayers layers,
+Result<OverlayMaterial> make_material(const SolvedDecal& decal, const OverlayLayers& layers,
                                       const OverlayChart& chart, const TextureEncoding& encoding,
                                       BakedJob& baked) {
   OverlayMaterial material;
@@ -267,7 +267,7 @@ Result<OverlayMaterial> make_material(const SolvedDecal& decal, OverlayLayers la
   material.roughness = layers.roughness;
   material.emissive = layers.emissive;
   for (const DecalLayer& layer : decal.job.layers) material.layers.push_back(layer.name);
-  const std::vector<OverlayPicture> pictures = draw_pictures(chart, std::move(layers.pictures));
+  const std::vector<OverlayPicture> pictures = draw_pictures(chart, layers.pictures);
   std::vector<std::future<Result<EncodedTexture>>> textures;
   textures.reserve(pictures.size());
   for (const OverlayPicture& picture : pictures)
@@ -293,9 +293,8 @@ Result<void> add_overlays(SolvedJob& job, const TextureEncoding& encoding, Baked
       return fail(ErrorCode::not_solved,
                   fmt::format("decal '{}': none of the image lies on the surface", decal.job.name));
     APPLIQUE_TRY(auto overlays, attach_overlay(job.model, decal, mesh));
-    APPLIQUE_TRY(OverlayLayers layers, make_overlay_layers(job.model, decal));
-    APPLIQUE_TRY(const OverlayMaterial shown,
-                 make_material(decal, std::move(layers), chart, encoding, baked));
+    APPLIQUE_TRY(const OverlayLayers layers, make_overlay_layers(job.model, decal));
+    APPLIQUE_TRY(const OverlayMaterial shown, make_material(decal, layers, chart, encoding, baked));
     const std::size_t material = add_overlay_material(baked.document, decal.job.name, shown);
     for (OverlayMesh& overlay : overlays) {
       if (shown.textures.contains(MaterialSlot::normal)) make_tangents(overlay);

@@ -110,9 +110,10 @@ void turn_normal(const Eigen::Vector2d& by_x, const Eigen::Vector2d& by_y, std::
 }
 
 /// Whether an image is its own picture.
-bool shows_itself(const OverlayChart& chart, const Image& image) {
-  const bool single = image.width == 1 && image.height == 1;
-  return single || (chart.warp == nullptr && image.width == chart.width && image.height == chart.height);
+bool shows_itself(const OverlayChart& chart, const OverlayPicture& picture) {
+  const auto& [slot, image] = picture;
+  const bool constant = slot != MaterialSlot::base_color && image.width == 1 && image.height == 1;
+  return constant || (chart.warp == nullptr && image.width == chart.width && image.height == chart.height);
 }
 
 /// Texture coordinates of whole faces: their vertices' places in the chart.
@@ -140,25 +141,25 @@ OverlayLayout lay_out_overlay(const Model& model, const SolvedDecal& decal, doub
   return {std::move(whole), chart, false};
 }
 
-std::vector<OverlayPicture> draw_pictures(const OverlayChart& chart, std::vector<OverlayPicture> images) {
+std::vector<OverlayPicture> draw_pictures(const OverlayChart& chart, std::span<const OverlayPicture> images) {
   std::vector<OverlayPicture> pictures;
   bool drawn = false;
-  for (auto& [slot, image] : images) {
+  for (const OverlayPicture& image : images) {
     if (shows_itself(chart, image)) {
-      pictures.push_back({slot, image});
+      pictures.push_back(image);
       continue;
     }
     drawn = true;
     Image picture = make_image(chart.width, chart.height, {0, 0, 0, 65535});
-    picture.channels = image.channels;
-    picture.bits = image.bits;
-    pictures.push_back({slot, std::move(picture)});
+    picture.channels = image.image.channels;
+    picture.bits = image.image.bits;
+    pictures.push_back({image.slot, std::move(picture)});
   }
   if (!drawn) return pictures;
   const auto draw_row = [&](int y, const auto& here, const auto& below) {
     for (std::size_t i = 0; i < images.size(); ++i) {
       auto& [slot, picture] = pictures[i];
-      if (shows_itself(chart, images[i].image)) continue;
+      if (shows_itself(chart, images[i])) continue;
       for (int x = 0; x < chart.width; ++x) {
         const auto k = static_cast<std::size_t>(x);
         std::uint16_t* texel = picture.pixel(x, y);

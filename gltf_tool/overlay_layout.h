@@ -1,5 +1,6 @@
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include <Eigen/Core>
@@ -50,10 +51,10 @@ struct OverlayLayout {
 /// The layout points into the decal.
 OverlayLayout lay_out_overlay(const Model& model, const SolvedDecal& decal, double offset);
 
-/// Lays images, in the decal's frame and of its size, out as pictures; one of a single texel stays one.
-/// Outside the image they are transparent, with the colours of the border, if they have an alpha. Normals are
-/// turned with the image where that is bent: by the direction in the picture in which the image's x runs at
-/// each texel, as a bake turns them into a texture's frames.
-std::vector<OverlayPicture> draw_pictures(const OverlayChart& chart, std::vector<OverlayPicture> images);
+/// Lays images, in the decal's frame and of its size, out as pictures; a constant of a single texel stays
+/// one. Outside the image they are transparent, with the colours of the border, if they have an alpha.
+/// Normals are turned with the image where that is bent: by the direction in the picture in which the image's
+/// x runs at each texel, as a bake turns them into a texture's frames.
+std::vector<OverlayPicture> draw_pictures(const OverlayChart& chart, std::span<const OverlayPicture> images);
 
 }  // namespace applique

@@ -53,7 +53,8 @@ class OverlayMeshTest : public testing::Test {
 
   const SolvedDecal& decal() const { return job_.decals.front(); }
   static Image draw(const OverlayLayout& layout, MaterialSlot slot, const Image& image) {
-    return draw_pictures(layout.chart, {{slot, image}}).front().image;
+    const OverlayPicture shown = {slot, image};
+    return draw_pictures(layout.chart, {&shown, 1}).front().image;
   }
   Image base_colour() {
     return make_overlay_layers(job_.model, job_.decals.front()).value().pictures.front().image;
