@@ -93,7 +93,6 @@ class NodeOverlay {
       if (fresh) add_vertex(corners[k], sources, rig);
       added[k] = found->second;
     }
-    if (rig != nullptr && part.mirrored) std::swap(added[1], added[2]);
     overlay.triangles.push_back(added);
   }
 
@@ -129,6 +128,7 @@ class NodeOverlay {
     }
     const Matrix4d inverse = add_influences(sources, *rig).inverse();
     const Matrix3d linear = inverse.topLeftCorner<3, 3>();
+    if (rig->skin && linear.determinant() < 0) overlay.joints_mirror = true;
     const double height = (linear * (mesh_->heights[vertex] * normal)).norm();
     // Normals go by the inverse transpose; from the scene back, that is the transpose of the matrix itself.
     Vec3 unposed_normal = (linear.inverse().transpose() * normal).normalized();
@@ -190,6 +190,19 @@ class NodeOverlay {
   std::map<Key, std::uint32_t> index_;
 };
 
+/// Turns x over.
+void turn_over(OverlayMesh& overlay) {
+  const auto turn = [](std::vector<Vec3>& vectors) {
+    for (Vec3& vector : vectors) vector.x() = -vector.x();
+  };
+  turn(overlay.positions);
+  turn(overlay.normals);
+  for (MorphTarget& target : overlay.targets) {
+    turn(target.positions);
+    turn(target.normals);
+  }
+}
+
 }  // namespace
 
 Result<std::vector<OverlayMesh>> attach_overlay(const Model& model, const SolvedDecal& decal,
@@ -222,7 +235,7 @@ Result<std::vector<OverlayMesh>> attach_overlay(const Model& model, const Solved
     OverlayMesh& overlay = overlays.try_emplace(node, decal, mesh).first->second.overlay;
     overlay.node = node;
     if (!node) continue;
-    overlay.mirrored = model.parts[part].mirrored;
+    overlay.mirrored = model.parts[part].mirrored && !rig.skin;
     if (rig.skin)
       overlay.influences_per_vertex = std::max(overlay.influences_per_vertex, rig.skin->per_vertex);
     overlay.targets.resize(std::max(overlay.targets.size(), rig.targets.size()));
@@ -233,7 +246,10 @@ Result<std::vector<OverlayMesh>> attach_overlay(const Model& model, const Solved
     overlays.at(node).add_triangle(t, part, model.parts[part], node ? &rigs.at(part) : nullptr);
   }
   std::vector<OverlayMesh> list;
-  for (auto& [node, grown] : overlays) list.push_back(std::move(grown.overlay));
+  for (auto& [node, grown] : overlays) {
+    if (grown.overlay.mirrored) turn_over(grown.overlay);
+    list.push_back(std::move(grown.overlay));
+  }
   return list;
 }
 

@@ -14,6 +14,7 @@
 #include "edit.h"
 #include "instances.h"
 #include "overlay.h"
+#include "overlay_layers.h"
 #include "overlay_layout.h"
 #include "separate_uvs.h"
 #include "write_tangents.h"
@@ -235,6 +236,9 @@ Result<void> transfer_all(SolvedJob& job, std::vector<TargetWork>& works, GpuBak
       if (!again) warn_of_factors(decal, job, work);
     }
   }
+  for (std::size_t d = 0; d < layers.size(); ++d)
+    job.decals[d].warnings.insert(job.decals[d].warnings.end(), layers[d].warnings().begin(),
+                                  layers[d].warnings().end());
   const Stopwatch watch;
   for (const SlotSeams& slot : seams) join_slot(slot);
   baked.times.add("seams", watch.seconds());
@@ -270,19 +274,46 @@ Result<void> store_textures(std::vector<TargetWork>& works, const TextureEncodin
   return {};
 }
 
+/// Draws and encodes the pictures of an overlay.
+Result<OverlayMaterial> make_material(const SolvedDecal& decal, const OverlayLayers& layers,
+                                      const OverlayChart& chart, const TextureEncoding& encoding,
+                                      BakedJob& baked) {
+  OverlayMaterial material;
+  material.metallic = layers.metallic;
+  material.roughness = layers.roughness;
+  material.emissive = layers.emissive;
+  for (const DecalLayer& layer : decal.job.layers) material.layers.push_back(layer.name);
+  const std::vector<OverlayPicture> pictures = draw_pictures(chart, layers.pictures);
+  std::vector<std::future<Result<EncodedTexture>>> textures;
+  textures.reserve(pictures.size());
+  for (const OverlayPicture& picture : pictures)
+    textures.push_back(
+        std::async(std::launch::async, [&] { return encode_texture(picture.image, encoding); }));
+  for (std::size_t i = 0; i < textures.size(); ++i) {
+    const MaterialSlot slot = pictures[i].slot;
+    APPLIQUE_TRY(EncodedTexture encoded, textures[i].get());
+    warn_of_format(baked, fmt::format("the {} texture of the overlay '{}'", name_of(slot), decal.job.name),
+                   encoded);
+    material.textures[slot] = std::move(encoded.bytes);
+  }
+  return material;
+}
+
 Result<void> add_overlays(SolvedJob& job, const TextureEncoding& encoding, BakedJob& baked) {
   for (SolvedDecal& decal : job.decals) {
     if (decal.job.output != DecalOutput::overlay) continue;
     const Stopwatch watch;
-    const auto [mesh, picture, divided_skin] =
+    const auto [mesh, chart, divided_skin] =
         lay_out_overlay(job.model, decal, decal.job.offset.value_or(default_offset(job.model)));
     if (mesh.triangles.empty())
       return fail(ErrorCode::not_solved,
                   fmt::format("decal '{}': none of the image lies on the surface", decal.job.name));
-    APPLIQUE_TRY(const auto overlays, attach_overlay(job.model, decal, mesh));
-    APPLIQUE_TRY(const EncodedTexture encoded, encode_texture(picture, encoding));
-    const std::size_t material = add_overlay_material(baked.document, decal.job.name, encoded.bytes);
-    for (const OverlayMesh& overlay : overlays) {
+    APPLIQUE_TRY(auto overlays, attach_overlay(job.model, decal, mesh));
+    APPLIQUE_TRY(const OverlayLayers layers, make_overlay_layers(job.model, decal));
+    APPLIQUE_TRY(const OverlayMaterial shown, make_material(decal, layers, chart, encoding, baked));
+    const std::size_t material = add_overlay_material(baked.document, decal.job.name, shown);
+    for (OverlayMesh& overlay : overlays) {
+      if (shown.textures.contains(MaterialSlot::normal)) make_tangents(overlay);
       add_overlay(baked.document, decal.job.name, overlay, material);
       warn_of_motion(decal, baked.document, overlay);
     }
@@ -294,7 +325,6 @@ Result<void> add_overlays(SolvedJob& job, const TextureEncoding& encoding, Baked
                "poses exactly only at the corners of its triangles; bake the decal, or give the overlay "
                "a larger \"offset\"",
                decal.job.name)});
-    warn_of_format(baked, fmt::format("the texture of the overlay '{}'", decal.job.name), encoded);
     decal.times.add("overlay", watch.seconds());
   }
   return {};

@@ -74,7 +74,7 @@ class Surroundings {
   std::array<std::array<double, 2>, 2> range_ = {{{1e9, -1e9}, {1e9, -1e9}}};
 };
 
-/// Encodes a linear colour as the image stores it.
+/// A share of 1 as the image stores it.
 std::uint16_t stored(double value) {
   return static_cast<std::uint16_t>(257 * std::lround(255 * std::clamp(value, 0.0, 1.0)));
 }
@@ -131,36 +131,13 @@ void turn_into_tangent_space(const ModelPart& part, const std::array<std::uint32
 }
 
 /// What the factors of a material make of a slot without a texture, as the texture would store it.
-std::array<std::uint16_t, 4> factor_value(const Model& model, std::optional<std::size_t> index,
+std::array<std::uint16_t, 4> factor_value(const Model& model, std::optional<std::size_t> material,
                                           MaterialSlot slot) {
-  const auto none = nlohmann::ordered_json::object();
-  const auto& material = index ? model.document.json.at("materials").at(*index) : none;
-  const auto number = [&](const char* key) {
-    const auto* value = find(material, {"pbrMetallicRoughness", key});
-    return value != nullptr ? value->get<double>() : 1.0;
-  };
-  switch (slot) {
-    case MaterialSlot::base_color: {
-      const auto factor =
-          index ? model.materials[*index].base_colour_factor : std::array<double, 4>{1, 1, 1, 1};
-      return {stored(linear_to_srgb(factor[0])), stored(linear_to_srgb(factor[1])),
-              stored(linear_to_srgb(factor[2])), stored(factor[3])};
-    }
-    case MaterialSlot::metallic_roughness:
-      return {stored(1), stored(number("roughnessFactor")), stored(number("metallicFactor")), stored(1)};
-    case MaterialSlot::normal:
-      return {128 * 257, 128 * 257, stored(1), stored(1)};
-    case MaterialSlot::occlusion:
-      return {stored(1), stored(1), stored(1), stored(1)};
-    case MaterialSlot::emissive: {
-      std::array<double, 3> factor = {0, 0, 0};
-      if (const auto* value = find(material, {"emissiveFactor"}))
-        factor = value->get<std::array<double, 3>>();
-      return {stored(linear_to_srgb(factor[0])), stored(linear_to_srgb(factor[1])),
-              stored(linear_to_srgb(factor[2])), stored(1)};
-    }
-  }
-  return {};
+  const auto none = Document::Json::object();
+  auto value = read_factors(material ? model.document.json.at("materials").at(*material) : none, slot);
+  if (encoding_of(slot) == Encoding::colour)
+    for (std::size_t c = 0; c < 3; ++c) value[c] = linear_to_srgb(value[c]);
+  return {stored(value[0]), stored(value[1]), stored(value[2]), stored(value[3])};
 }
 
 /// Texels of a texture that is made for a slot.

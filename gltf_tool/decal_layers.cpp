@@ -20,6 +20,15 @@ Image constant_image(int width, int height, const std::array<double, 3>& value) 
   return make_image(width, height, stored);
 }
 
+/// Whether a stored vector has a direction, and one out of the surface but for what rounding and compression
+/// leave.
+bool is_surface_normal(const std::uint16_t* stored) {
+  constexpr double shortest = 0.1, lowest = -0.05;
+  const auto component = [&](int c) { return 2 * stored[c] / 65535.0 - 1; };
+  const double x = component(0), y = component(1), z = component(2);
+  return x * x + y * y + z * z >= shortest * shortest && z >= lowest;
+}
+
 }  // namespace
 
 Encoding encoding_of(MaterialSlot slot) {
@@ -41,17 +50,29 @@ Result<const DecalImage*> DecalLayers::image(std::size_t index) {
     if (layer.image.empty() && !layer.value && decal_->job.mask.empty()) {
       images_[index] = make_decal_image(decal_->image, decal_->region, linear);
     } else {
-      if (alpha_.empty()) APPLIQUE_CHECK(load_alpha());
-      APPLIQUE_TRY(Image image, colours(layer));
-      for (std::size_t i = 0; i < alpha_.size(); ++i) {
-        std::uint16_t* pixel = &image.rgba[4 * i];
-        if (layer.scalar) pixel[1] = pixel[2] = pixel[0];
-        pixel[3] = product(pixel[3], alpha_[i]);
-      }
+      APPLIQUE_TRY(Image image, values(index));
+      APPLIQUE_TRY(const auto shown, alpha());
+      for (std::size_t i = 0; i < shown.size(); ++i)
+        image.rgba[4 * i + 3] = product(image.rgba[4 * i + 3], shown[i]);
       images_[index] = make_decal_image(image, decal_->region, linear);
     }
   }
   return &*images_[index];
+}
+
+Result<Image> DecalLayers::values(std::size_t index) {
+  const DecalLayer& layer = decal_->job.layers[index];
+  APPLIQUE_TRY(Image image, source_of(layer));
+  if (layer.scalar)
+    for (std::size_t i = 0; i < image.rgba.size(); i += 4)
+      image.rgba[i + 1] = image.rgba[i + 2] = image.rgba[i];
+  if (layer.slot == MaterialSlot::normal) APPLIQUE_CHECK(mend_normals(layer, image));
+  return image;
+}
+
+Result<std::span<const std::uint16_t>> DecalLayers::alpha() {
+  if (alpha_.empty()) APPLIQUE_CHECK(load_alpha());
+  return alpha_;
 }
 
 Result<void> DecalLayers::load_alpha() {
@@ -71,12 +92,12 @@ Result<Image> DecalLayers::read_scaled(const std::filesystem::path& path, Floats
   if (!image)
     return fail(image.error().code, fmt::format("decal '{}': {}", decal_->job.name, image.error().message));
   if (image->width == decal_->image.width && image->height == decal_->image.height) return image;
-  return resize_image(*image, decal_->image.width, decal_->image.height);
+  Image scaled = resize_image(*image, decal_->image.width, decal_->image.height);
+  scaled.bits = image->bits;
+  return scaled;
 }
 
-/// What the layer has for each pixel; its alpha is its own, that of the decal's image where it shows that
-/// one.
-Result<Image> DecalLayers::colours(const DecalLayer& layer) const {
+Result<Image> DecalLayers::source_of(const DecalLayer& layer) const {
   const Image& own = decal_->image;
   if (layer.value) return constant_image(own.width, own.height, *layer.value);
   if (!layer.image.empty())
@@ -85,6 +106,37 @@ Result<Image> DecalLayers::colours(const DecalLayer& layer) const {
   Image image = own;
   for (std::size_t i = 3; i < image.rgba.size(); i += 4) image.rgba[i] = 65535;
   return image;
+}
+
+Result<void> DecalLayers::mend_normals(const DecalLayer& layer, Image& image) {
+  APPLIQUE_TRY(const auto decal_alpha, alpha());
+  std::size_t shown = 0, faulty = 0;
+  for (std::size_t i = 0; i < decal_alpha.size(); ++i) {
+    std::uint16_t* pixel = &image.rgba[4 * i];
+    const bool seen = decal_alpha[i] > 0 && pixel[3] > 0;
+    shown += seen ? 1 : 0;
+    if (is_surface_normal(pixel)) continue;
+    faulty += seen ? 1 : 0;
+    pixel[0] = pixel[1] = 128 * 257;
+    pixel[2] = 65535;
+  }
+  if (faulty == 0) return {};
+  const std::string file = layer.image.filename().string();
+  if (faulty == shown)
+    return fail(ErrorCode::image_invalid,
+                fmt::format("decal '{}': '{}' is no normal map: no pixel of it holds a direction out of the "
+                            "surface, as (128, 128, 255) does; name another file, or leave the layer out",
+                            decal_->job.name, file));
+  // Where an image was scaled, a few vectors cancel out.
+  constexpr double worth_a_word = 1e-3;
+  const double share = static_cast<double>(faulty) / static_cast<double>(shown);
+  if (share > worth_a_word)
+    warnings_.push_back(
+        {"normal_map_faulty",
+         fmt::format("decal '{}': {:.2g} % of the pixels of '{}' hold no direction out of the "
+                     "surface; they are taken as flat, (128, 128, 255)",
+                     decal_->job.name, 100 * share, file)});
+  return {};
 }
 
 }  // namespace applique

@@ -1,6 +1,9 @@
 #pragma once
 
+#include <cstdint>
 #include <optional>
+#include <span>
+#include <vector>
 
 #include "applique/image/decal_image.h"
 
@@ -22,14 +25,28 @@ class DecalLayers {
   /// Errors: those of read_image, naming the decal.
   Result<const DecalImage*> image(std::size_t layer);
 
+  /// What a layer has for each pixel of the decal's image, straight; the alpha is the layer's own, which the
+  /// decal's image in the place of a layer has not. Vectors of a normal map that no surface has are flat.
+  /// Errors: those of read_image, naming the decal; image_invalid for a normal map of such vectors only.
+  Result<Image> values(std::size_t layer);
+
+  /// How much of the decal shows at each pixel before the region cuts it: the alpha of its image or the mask
+  /// in its place. Errors: those of read_image, naming the decal.
+  Result<std::span<const std::uint16_t>> alpha();
+
+  /// What there was to say of the layers so far: normal_map_faulty.
+  [[nodiscard]] const std::vector<Warning>& warnings() const { return warnings_; }
+
  private:
   Result<void> load_alpha();
   [[nodiscard]] Result<Image> read_scaled(const std::filesystem::path& path, Floats floats) const;
-  Result<Image> colours(const DecalLayer& layer) const;
+  Result<Image> source_of(const DecalLayer& layer) const;
+  Result<void> mend_normals(const DecalLayer& layer, Image& image);
 
   const SolvedDecal* decal_;
   std::vector<std::optional<DecalImage>> images_;
   std::vector<std::uint16_t> alpha_;  // Of all layers, by pixel.
+  std::vector<Warning> warnings_;
 };
 
 }  // namespace applique

@@ -65,12 +65,14 @@ Place place_of(const json& feature) {
   return RayPlace{vector_of(feature["ray"]["origin"]), vector_of(feature["ray"]["direction"])};
 }
 
+constexpr std::array blend_names = {"normal",     "multiply",    "screen",     "overlay",    "darken",
+                                    "lighten",    "color-dodge", "color-burn", "hard-light", "soft-light",
+                                    "difference", "exclusion",   "hue",        "saturation", "color",
+                                    "luminosity", "add",         "erase"};
+
 BlendMode blend_of(const std::string& name) {
-  constexpr std::array names = {"normal",     "multiply",    "screen",     "overlay",    "darken",
-                                "lighten",    "color-dodge", "color-burn", "hard-light", "soft-light",
-                                "difference", "exclusion",   "hue",        "saturation", "color",
-                                "luminosity", "add",         "erase"};
-  return static_cast<BlendMode>(std::find(names.begin(), names.end(), name) - names.begin());
+  return static_cast<BlendMode>(std::find(blend_names.begin(), blend_names.end(), name) -
+                                blend_names.begin());
 }
 
 /// What the keys of "layers" write.
@@ -97,6 +99,7 @@ void read_layer_source(const json& source, const std::filesystem::path& folder, 
 
 DecalLayer layer_of(const json& value, const LayerKind& kind, const std::filesystem::path& folder) {
   DecalLayer layer;
+  layer.name = kind.key;
   layer.slot = kind.slot;
   layer.channels = kind.channels;
   layer.scalar = kind.scalar;
@@ -192,17 +195,30 @@ Result<void> check_names(const std::vector<DecalJob>& decals, const std::string&
   return {};
 }
 
-/// A texture's channel is one layer's.
+/// A texture's channel is one layer's, and there is something to be seen.
 Result<void> check_layers(const json& decals, const std::string& file) {
   for (std::size_t i = 0; i < decals.size(); ++i) {
     const json layers = decals[i].value("layers", json::object());
+    const auto name = decals[i]["name"].get<std::string>();
+    const bool colourless = layers.contains("baseColor") && layers["baseColor"] == false;
+    if (colourless && layers.size() == 1)
+      return fail(ErrorCode::schema_violation,
+                  fmt::format("{}: /decals/{}/layers: found no layer beside \"baseColor\": false on decal "
+                              "'{}', of which nothing would be seen, expected a layer",
+                              file, i, name));
+    if (colourless && decals[i].value("output", "bake") == "overlay")
+      return fail(ErrorCode::schema_violation,
+                  fmt::format("{}: /decals/{}/layers/baseColor: found false on the overlay '{}', which lies "
+                              "over the surface and cannot leave its colour in place, expected a base "
+                              "colour, or \"output\": \"bake\"",
+                              file, i, name));
     for (const char* part : {"metallic", "roughness"})
       if (layers.contains("metallicRoughness") && layers.contains(part))
         return fail(
             ErrorCode::schema_violation,
             fmt::format("{0}: /decals/{1}/layers: found \"{2}\" beside \"metallicRoughness\" on decal '{3}', "
                         "which has it already, expected one of them",
-                        file, i, part, decals[i]["name"].get<std::string>()));
+                        file, i, part, name));
   }
   return {};
 }
@@ -223,6 +239,10 @@ Result<void> check_method_options(const json& decals, const std::string& file) {
 }
 
 }  // namespace
+
+const char* name_of(BlendMode mode) {
+  return blend_names[static_cast<std::size_t>(mode)];
+}
 
 std::vector<std::filesystem::path> images_of(const DecalJob& decal) {
   std::vector<std::filesystem::path> images = {decal.image};

@@ -49,9 +49,9 @@ struct JobFeature {
   double depth = 0;  ///< Larger where the decal is to lie on top of itself.
 };
 
-/// One entry of "decals".
 /// What a decal does to one texture of the materials under it.
 struct DecalLayer {
+  std::string name = "baseColor";  ///< As "layers" calls it: "roughness".
   MaterialSlot slot = MaterialSlot::base_color;
   std::array<bool, 4> channels = {true, true, true, true};  ///< Of the texture, that it writes.
   bool scalar = false;          ///< The image's red goes into all of the channels.
@@ -61,6 +61,7 @@ struct DecalLayer {
   BlendMode blend = BlendMode::normal;
 };
 
+/// One entry of "decals".
 struct DecalJob {
   std::string name;             ///< Unique in the job.
   std::filesystem::path image;  ///< Absolute, or relative to the working folder.
@@ -87,6 +88,9 @@ struct DecalJob {
   Overlap overlap = Overlap::stop;
 };
 
+/// As jobs call it: "color-burn".
+const char* name_of(BlendMode mode);
+
 /// All the images that a decal names.
 std::vector<std::filesystem::path> images_of(const DecalJob& decal);
 
@@ -102,8 +106,8 @@ struct Job {
 };
 
 /// Reads and validates a job file. Errors: file_unreadable, json_invalid (line and column), schema_violation
-/// (JSON pointer, what was found, what was expected; also two decals with one name, and options of a method
-/// that the decal does not use).
+/// (JSON pointer, what was found, what was expected; also two decals with one name, options of a method that
+/// the decal does not use, a decal without a layer, and an overlay without a base colour).
 Result<Job> load_job(const std::filesystem::path& path);
 
 }  // namespace applique

@@ -79,6 +79,29 @@ UvMapping read_uv_mapping(const Json& material, MaterialSlot slot) {
   return texture == nullptr ? UvMapping() : read_texture_mapping(*texture);
 }
 
+std::array<double, 4> read_factors(const Json& material, MaterialSlot slot) {
+  const auto number = [&](const char* key) {
+    const auto* value = find(material, {"pbrMetallicRoughness", key});
+    return value != nullptr ? value->get<double>() : 1.0;
+  };
+  switch (slot) {
+    case MaterialSlot::base_color:
+      return numbers_or(find(material, {"pbrMetallicRoughness", "baseColorFactor"}),
+                        std::array{1.0, 1.0, 1.0, 1.0});
+    case MaterialSlot::metallic_roughness:
+      return {1, number("roughnessFactor"), number("metallicFactor"), 1};
+    case MaterialSlot::normal:
+      return {0.5, 0.5, 1, 1};
+    case MaterialSlot::occlusion:
+      return {1, 1, 1, 1};
+    case MaterialSlot::emissive: {
+      const auto factor = numbers_or(find(material, {"emissiveFactor"}), std::array{0.0, 0.0, 0.0});
+      return {factor[0], factor[1], factor[2], 1};
+    }
+  }
+  return {};
+}
+
 UvMapping read_texture_mapping(const Json& reference) {
   UvMapping mapping;
   mapping.set = index_of(reference, "texCoord").value_or(0);

@@ -48,6 +48,10 @@ struct MaterialTexture {
 /// colour's.
 MaterialTexture read_texture(const Document& document, const Document::Json& material, MaterialSlot slot);
 
+/// What a material's factors make of a slot without a texture: linear light, or numbers; a flat normal as
+/// textures store it; 1 in channels that nothing reads.
+std::array<double, 4> read_factors(const Document::Json& material, MaterialSlot slot);
+
 /// The mapping of one texture reference ({"index": …, "texCoord": …}) of a material.
 UvMapping read_texture_mapping(const Document::Json& reference);
 

@@ -46,7 +46,7 @@ std::size_t add_attribute(Document& document, const std::vector<Item>& items, bo
   Json accessor = {{"bufferView", add_buffer_view(document, as_bytes_of(values), array_buffer)},
                    {"componentType", 5126},
                    {"count", items.size()},
-                   {"type", N == 2 ? "VEC2" : "VEC3"}};
+                   {"type", fmt::format("VEC{}", N)}};
   if (bounds) {
     accessor["min"] = std::vector<double>(lower.begin(), lower.end());
     accessor["max"] = std::vector<double>(upper.begin(), upper.end());
@@ -168,12 +168,11 @@ void place_node(Document& document, const OverlayMesh& overlay, std::size_t adde
     if (!overlay.targets.empty() && followed.contains("weights"))
       nodes[added]["weights"] = followed["weights"];
     if (overlay.influences_per_vertex == 0) {
+      if (overlay.mirrored) nodes[added]["scale"] = {-1, 1, 1};
       nodes[*overlay.node]["children"].push_back(added);
       return;
     }
     nodes[added]["skin"] = followed["skin"];
-    // Viewers go by the node all the same to tell the outside from the inside.
-    if (overlay.mirrored) nodes[added]["scale"] = {-1, 1, 1};
   }
   if (count_of(document, "scenes") != 0)
     document.json["scenes"][index_of(document.json, "scene").value_or(0)]["nodes"].push_back(added);
@@ -182,18 +181,26 @@ void place_node(Document& document, const OverlayMesh& overlay, std::size_t adde
 }  // namespace
 
 std::size_t add_overlay_material(Document& document, const std::string& decal,
-                                 std::span<const std::uint8_t> image_bytes) {
-  const std::size_t image = add_image(document, image_bytes, decal);
+                                 const OverlayMaterial& material) {
   const std::size_t sampler = add_to(
       document, "samplers", {{"magFilter", 9729}, {"minFilter", 9987}, {"wrapS", 33071}, {"wrapT", 33071}});
-  const std::size_t texture = add_to(document, "textures", {{"sampler", sampler}});
-  show_image(document, texture, image);
-  Json pbr = {{"baseColorTexture", {{"index", texture}}}, {"metallicFactor", 0.0}, {"roughnessFactor", 1.0}};
-  return add_to(document, "materials",
-                {{"name", decal},
-                 {"pbrMetallicRoughness", std::move(pbr)},
-                 {"alphaMode", "BLEND"},
-                 {"doubleSided", false}});
+  Json pbr = {{"metallicFactor", material.metallic}, {"roughnessFactor", material.roughness}};
+  Json entry = {{"name", decal}};
+  for (const auto& [slot, bytes] : material.textures) {
+    const bool base = slot == MaterialSlot::base_color;
+    const std::size_t image =
+        add_image(document, bytes, base ? decal : fmt::format("{}-{}", decal, name_of(slot)));
+    const std::size_t texture = add_to(document, "textures", {{"sampler", sampler}});
+    show_image(document, texture, image);
+    const bool in_pbr = base || slot == MaterialSlot::metallic_roughness;
+    (in_pbr ? pbr : entry)[fmt::format("{}Texture", name_of(slot))] = {{"index", texture}};
+  }
+  entry["pbrMetallicRoughness"] = std::move(pbr);
+  if (material.emissive != std::array{0.0, 0.0, 0.0}) entry["emissiveFactor"] = material.emissive;
+  entry["alphaMode"] = "BLEND";
+  entry["doubleSided"] = false;
+  entry["extras"] = {{"applique", {{"layers", material.layers}}}};
+  return add_to(document, "materials", std::move(entry));
 }
 
 std::size_t add_overlay(Document& document, const std::string& decal, const OverlayMesh& overlay,
@@ -202,6 +209,7 @@ std::size_t add_overlay(Document& document, const std::string& decal, const Over
   Json attributes = {{"POSITION", add_attribute<3>(document, overlay.positions, true)}};
   attributes["NORMAL"] = add_attribute<3>(document, overlay.normals, false);
   attributes["TEXCOORD_0"] = add_attribute<2>(document, overlay.uvs, false);
+  if (!overlay.tangents.empty()) attributes["TANGENT"] = add_attribute<4>(document, overlay.tangents, false);
   add_influences(document, overlay, attributes);
   Json primitive = {{"attributes", std::move(attributes)}, {"indices", add_indices(document, overlay)}};
   primitive["material"] = material;

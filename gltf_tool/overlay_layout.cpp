@@ -3,10 +3,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include <Eigen/Geometry>
 
 #include "applique/base/parallel.h"
+
+#include "compositing.h"
 
 namespace applique {
 namespace {
@@ -19,14 +22,6 @@ bool lies_on_skin(const Model& model, const SolvedDecal& decal) {
   });
 }
 
-/// The plane's picture: its texel (x, y) shows the place `origin` + (x, y) / density, in pixels of the image
-/// before it is bent.
-struct Chart {
-  Eigen::Vector2d origin;
-  double density = 1;  ///< Texels a pixel.
-  int width = 0, height = 0;
-};
-
 constexpr double margin = 16;  // texels: the picture ends in nothing up to mip level 4
 
 Eigen::Vector2d in_pixels(const ImageFrame& frame, Vec2 place) {
@@ -35,7 +30,7 @@ Eigen::Vector2d in_pixels(const ImageFrame& frame, Vec2 place) {
 }
 
 /// A chart of the plane's part under the image.
-Chart find_chart(const SolvedDecal& decal, const DecalMesh& divided) {
+OverlayChart bent_chart(const SolvedDecal& decal, const DecalMesh& divided) {
   Eigen::AlignedBox2d box;
   for (const DecalMesh::Origin& origin : divided.origins) {
     Vec2 place = 0;
@@ -46,7 +41,7 @@ Chart find_chart(const SolvedDecal& decal, const DecalMesh& divided) {
   // Finer than the image, so that bending it costs no detail, within reason.
   constexpr double finer = 2, large = 2048, largest = 8192;
   const double longest = box.sizes().maxCoeff();
-  Chart chart;
+  OverlayChart chart = {.frame = decal.region.frame(), .warp = &decal.map.warp};
   chart.density = std::min({finer, std::max(1.0, large / longest), largest / longest});
   chart.origin = box.min().array() - margin / chart.density;
   const Eigen::Vector2d texels = chart.density * box.sizes();
@@ -56,9 +51,11 @@ Chart find_chart(const SolvedDecal& decal, const DecalMesh& divided) {
 }
 
 /// The image itself, with a margin.
-Chart frame_image(const Image& image) {
-  constexpr int border = static_cast<int>(margin);
-  return {{-margin, -margin}, 1, image.width + 2 * border, image.height + 2 * border};
+OverlayChart straight_chart(const ImageFrame& frame, double border) {
+  return {.frame = frame,
+          .origin = {-border, -border},
+          .width = static_cast<int>(frame.width + 2 * border),
+          .height = static_cast<int>(frame.height + 2 * border)};
 }
 
 /// The image at a place in pixels, bilinear; outside it is transparent, with the colours of its border.
@@ -84,24 +81,44 @@ std::array<std::uint16_t, 4> sample(const Image& image, const Eigen::Vector2d& p
   return {stored(colour.x()), stored(colour.y()), stored(colour.z()), stored(alpha)};
 }
 
-/// Draws a chart; `to_image` takes its places to those of the image.
-template <class ToImage>
-Image draw(const Chart& chart, const Image& image, const ToImage& to_image) {
-  Image picture = make_image(chart.width, chart.height, {0, 0, 0, 0});
-  picture.bits = image.bits;
-  parallel_for(chart.height, [&](int y) {
-    for (int x = 0; x < chart.width; ++x) {
-      const Eigen::Vector2d place = chart.origin + Eigen::Vector2d(x + 0.5, y + 0.5) / chart.density;
-      const auto texel = sample(image, to_image(place));
-      std::copy(texel.begin(), texel.end(), picture.pixel(x, y));
-    }
-  });
-  return picture;
+/// Where the image is at the centres of a row of the chart's texels, in pixels, and at one more.
+std::vector<Eigen::Vector2d> places_of_row(const OverlayChart& chart, std::size_t y) {
+  std::vector<Eigen::Vector2d> places;
+  for (int x = 0; x <= chart.width; ++x) {
+    const Eigen::Vector2d place =
+        chart.origin + Eigen::Vector2d(x + 0.5, static_cast<double>(y) + 0.5) / chart.density;
+    places.push_back(
+        chart.warp == nullptr
+            ? place
+            : in_pixels(chart.frame, (*chart.warp)(chart.frame.to_plane({place.x(), place.y()}))));
+  }
+  return places;
+}
+
+/// Turns a stored normal from the image's frame into the picture's; the image moves by so much from texel to
+/// texel.
+void turn_normal(const Eigen::Vector2d& by_x, const Eigen::Vector2d& by_y, std::uint16_t* texel) {
+  // Along the image's x, with y up in both: the first column of the inverse Jacobian.
+  const double turn = by_x.x() * by_y.y() - by_x.y() * by_y.x() < 0 ? -1 : 1;
+  const double x = turn * by_y.y(), y = turn * by_x.y(), length = std::hypot(x, y);
+  if (length == 0) return;
+  const compositing::vec2 along(x / length, y / length), across(-turn * along.y, turn * along.x);
+  const compositing::vec4 own(texel[0] / 65535.0, texel[1] / 65535.0, texel[2] / 65535.0, 1);
+  const compositing::vec4 turned =
+      compositing::composite_normal(compositing::blend_normal, own, own, along, across);
+  for (int c = 0; c < 3; ++c) texel[c] = static_cast<std::uint16_t>(std::lround(65535 * turned[c]));
+}
+
+/// Whether an image is its own picture.
+bool shows_itself(const OverlayChart& chart, const OverlayPicture& picture) {
+  const auto& [slot, image] = picture;
+  const bool constant = slot != MaterialSlot::base_color && image.width == 1 && image.height == 1;
+  return constant || (chart.warp == nullptr && image.width == chart.width && image.height == chart.height);
 }
 
 /// Texture coordinates of whole faces: their vertices' places in the chart.
 void lay_into(DecalMesh& mesh, const ImageFrame& frame, const IdVector<PatchVertexId, Vec2>& places,
-              const Chart& chart) {
+              const OverlayChart& chart) {
   for (std::size_t i = 0; i < mesh.uvs.size(); ++i) {
     const Eigen::Vector2d texel =
         chart.density * (in_pixels(frame, places[mesh.origins[i].vertices[0]]) - chart.origin);
@@ -112,26 +129,57 @@ void lay_into(DecalMesh& mesh, const ImageFrame& frame, const IdVector<PatchVert
 }  // namespace
 
 OverlayLayout lay_out_overlay(const Model& model, const SolvedDecal& decal, double offset) {
+  const ImageFrame& frame = decal.region.frame();
   DecalMesh divided = build_overlay_mesh(model, decal, offset);
-  Image image = overlay_image(decal);
   const bool on_skin = lies_on_skin(model, decal);
   if (divided.triangles.empty() || decal.map.groups > 1 || !on_skin)
-    return {std::move(divided), std::move(image), on_skin};
-  const ImageFrame& frame = decal.region.frame();
+    return {std::move(divided), straight_chart(frame, 0), on_skin};
   DecalMesh whole = build_whole_mesh(model, decal, offset);
-  if (is_linear(model, decal)) {
-    const Chart chart = frame_image(image);
-    lay_into(whole, frame, decal.map.image, chart);
-    return {std::move(whole), draw(chart, image, [](const Eigen::Vector2d& place) { return place; }), false};
+  const bool straight = is_linear(model, decal);
+  const OverlayChart chart = straight ? straight_chart(frame, margin) : bent_chart(decal, divided);
+  lay_into(whole, frame, straight ? decal.map.image : decal.map.plane, chart);
+  return {std::move(whole), chart, false};
+}
+
+std::vector<OverlayPicture> draw_pictures(const OverlayChart& chart, std::span<const OverlayPicture> images) {
+  std::vector<OverlayPicture> pictures;
+  bool drawn = false;
+  for (const OverlayPicture& image : images) {
+    if (shows_itself(chart, image)) {
+      pictures.push_back(image);
+      continue;
+    }
+    drawn = true;
+    Image picture = make_image(chart.width, chart.height, {0, 0, 0, 65535});
+    picture.channels = image.image.channels;
+    picture.bits = image.image.bits;
+    pictures.push_back({image.slot, std::move(picture)});
   }
-  const Chart chart = find_chart(decal, divided);
-  lay_into(whole, frame, decal.map.plane, chart);
-  return {std::move(whole),
-          draw(chart, image,
-               [&](const Eigen::Vector2d& place) {
-                 return in_pixels(frame, decal.map.warp(frame.to_plane({place.x(), place.y()})));
-               }),
-          false};
+  if (!drawn) return pictures;
+  const auto draw_row = [&](int y, const auto& here, const auto& below) {
+    for (std::size_t i = 0; i < images.size(); ++i) {
+      auto& [slot, picture] = pictures[i];
+      if (shows_itself(chart, images[i])) continue;
+      for (int x = 0; x < chart.width; ++x) {
+        const auto k = static_cast<std::size_t>(x);
+        std::uint16_t* texel = picture.pixel(x, y);
+        std::copy_n(sample(images[i].image, here[k]).begin(), picture.has_alpha() ? 4 : 3, texel);
+        if (slot == MaterialSlot::normal && chart.warp != nullptr)
+          turn_normal(here[k + 1] - here[k], below[k] - here[k], texel);
+      }
+    }
+  };
+  constexpr std::size_t rows_at_once = 32;
+  parallel_ranges(static_cast<std::size_t>(chart.height), rows_at_once,
+                  [&](std::size_t first, std::size_t last) {
+                    auto here = places_of_row(chart, first);
+                    for (std::size_t y = first; y < last; ++y) {
+                      auto below = places_of_row(chart, y + 1);
+                      draw_row(static_cast<int>(y), here, below);
+                      here = std::move(below);
+                    }
+                  });
+  return pictures;
 }
 
 }  // namespace applique

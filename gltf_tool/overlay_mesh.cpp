@@ -277,7 +277,12 @@ void cut_at_image_border(Builder& mesh, const ImageFrame& frame) {
   for (const Vec2 inward : {Vec2(1, 0), Vec2(-1, 0), Vec2(0, 1), Vec2(0, -1)}) {
     const double extent = inward.imag() == 0 ? half_width : half_height;
     std::vector<double> distance(mesh.image.size());
-    for (std::size_t i = 0; i < distance.size(); ++i) distance[i] = extent + dot(inward, mesh.image[i]);
+    for (std::size_t i = 0; i < distance.size(); ++i) {
+      distance[i] = extent + dot(inward, mesh.image[i]);
+      // Else rounding would leave slivers where the border runs along edges, whose texture has no direction.
+      constexpr double nothing = 1e-9;
+      if (std::abs(distance[i]) < nothing) distance[i] = 0;
+    }
     BorderCut(mesh, std::move(distance)).run();
   }
 }
@@ -336,18 +341,6 @@ bool is_linear(const Model& model, const SolvedDecal& decal, double max_deviatio
 
 double default_offset(const Model& model) {
   return 0.0005 * model.diagonal();
-}
-
-Image overlay_image(const SolvedDecal& decal) {
-  Image image = decal.image;
-  image.channels = 4;
-  const DecalImage cut = make_decal_image(decal.image, decal.region);
-  for (int y = 0; y < image.height; ++y)
-    for (int x = 0; x < image.width; ++x) {
-      const double alpha = cut.texels[static_cast<std::size_t>(y) * image.width + x][3] * decal.job.opacity;
-      image.pixel(x, y)[3] = static_cast<std::uint16_t>(std::lround(std::clamp(alpha, 0.0, 1.0) * 0xffff));
-    }
-  return image;
 }
 
 }  // namespace applique

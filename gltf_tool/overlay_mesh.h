@@ -4,8 +4,6 @@
 #include <cstdint>
 #include <vector>
 
-#include "applique/image/image.h"
-
 #include "model.h"
 #include "solve_job.h"
 
@@ -49,9 +47,5 @@ bool is_linear(const Model& model, const SolvedDecal& decal, double max_deviatio
 
 /// The offset of an overlay for which the job names none: 0.05 % of the model's diagonal.
 double default_offset(const Model& model);
-
-/// The picture for it: the decal's image, with the alpha multiplied by the region's coverage of each pixel
-/// and by the opacity.
-Image overlay_image(const SolvedDecal& decal);
 
 }  // namespace applique

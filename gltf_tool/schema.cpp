@@ -88,8 +88,26 @@ std::string shortened(const json& value) {
   return text.size() <= max_length ? text : text.substr(0, max_length) + "…";
 }
 
-std::string description_of(const json& schema) {
-  return schema.value("description", std::string("another value"));
+/// The words that the schema, or one of its choices, allows.
+std::vector<std::string> allowed_words(const json& schema, const json& root) {
+  std::vector<std::string> words;
+  for (const json& word : schema.value("enum", json::array()))
+    if (word.is_string()) words.push_back(word.get<std::string>());
+  for (const json& choice : schema.value("anyOf", json::array()))
+    for (std::string& word : allowed_words(resolved(choice, root), root)) words.push_back(std::move(word));
+  return words;
+}
+
+/// The schema's own words, and those that it allows where it does not name them itself.
+std::string description_of(const json& schema, const json& root) {
+  const std::string description = schema.value("description", std::string());
+  const std::vector<std::string> words = allowed_words(schema, root);
+  const bool named = std::all_of(words.begin(), words.end(), [&](const std::string& word) {
+    return description.find(word) != std::string::npos;
+  });
+  if (description.empty() && words.empty()) return "another value";
+  if (named) return description;
+  return fmt::format("{}{}", description.empty() ? "one of " : description + ": ", fmt::join(words, ", "));
 }
 
 std::vector<std::string> keys_of(const json& object) {
@@ -113,7 +131,8 @@ std::string explain_missing(const json& value, const json& schema, const json& r
   for (const json& name : schema.value("required", json::array()))
     if (!value.contains(name.get<std::string>())) {
       const json& property = resolved(schema.at("properties").at(name.get<std::string>()), root);
-      return fmt::format("found no '{}', expected {}", name.get<std::string>(), description_of(property));
+      return fmt::format("found no '{}', expected {}", name.get<std::string>(),
+                         description_of(property, root));
     }
   return {};
 }
@@ -153,7 +172,7 @@ std::string explain(Place place, const json& root) {
           explain_dependency(*place.value, *place.schema)})
       if (!sentence.empty()) return sentence;
   }
-  return fmt::format("found {}, expected {}", shortened(*place.value), description_of(*place.schema));
+  return fmt::format("found {}, expected {}", shortened(*place.value), description_of(*place.schema, root));
 }
 
 }  // namespace

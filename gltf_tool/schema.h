@@ -17,7 +17,7 @@ Result<nlohmann::json> parse_json(const std::string& text, const std::string& fi
 
 /// Validates `document` against `schema`. Errors: schema_violation; one line for each fault (at most eight),
 /// of the form "job.json: /decals/0/opacity: found 1.7, expected a number from 0 to 1". What is expected is
-/// the schema's own "description" of the place.
+/// the schema's own "description" of the place, with the words that it allows.
 Result<void> check_schema(const nlohmann::json& document, const nlohmann::json& schema,
                           const std::string& file);
 

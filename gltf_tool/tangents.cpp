@@ -76,4 +76,21 @@ std::vector<std::array<Tangent, 3>> tangent_frames(const ModelPart& part,
   return frames;
 }
 
+std::optional<std::vector<std::array<float, 4>>> vertex_tangents(
+    const ModelPart& part, const std::vector<std::array<Tangent, 3>>& frames) {
+  std::vector<std::array<float, 4>> tangents(part.positions.size(), {1, 0, 0, 0});
+  for (std::size_t t = 0; t < frames.size(); ++t)
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto& [direction, sign] = frames[t][k];
+      std::array<float, 4>& tangent = tangents[part.triangles[t][k]];
+      const auto side = static_cast<float>(sign);
+      if (tangent[3] != 0 && tangent[3] != side) return std::nullopt;
+      for (int c = 0; c < 3; ++c) tangent[static_cast<std::size_t>(c)] = static_cast<float>(direction[c]);
+      tangent[3] = side;
+    }
+  for (auto& tangent : tangents)
+    if (tangent[3] == 0) tangent[3] = 1;  // A vertex of no triangle.
+  return tangents;
+}
+
 }  // namespace applique

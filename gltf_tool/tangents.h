@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -17,5 +18,10 @@ namespace applique {
 /// points down. `uvs` by vertex, of the normal texture.
 std::vector<std::array<Tangent, 3>> tangent_frames(const ModelPart& part,
                                                    std::span<const std::array<double, 2>> uvs);
+
+/// The frames by vertex, as glTF stores them: a unit tangent and its sign. None where the triangles about a
+/// vertex differ in the sign.
+std::optional<std::vector<std::array<float, 4>>> vertex_tangents(
+    const ModelPart& part, const std::vector<std::array<Tangent, 3>>& frames);
 
 }  // namespace applique

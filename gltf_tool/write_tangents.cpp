@@ -14,24 +14,6 @@
 namespace applique {
 namespace {
 
-/// One tangent a vertex, unit, with its sign; none where the triangles about a vertex differ in theirs.
-std::optional<std::vector<std::array<float, 4>>> tangents_by_vertex(
-    const ModelPart& part, const std::vector<std::array<Tangent, 3>>& frames) {
-  std::vector<std::array<float, 4>> tangents(part.positions.size(), {1, 0, 0, 0});
-  for (std::size_t t = 0; t < frames.size(); ++t)
-    for (std::size_t k = 0; k < 3; ++k) {
-      const auto& [direction, sign] = frames[t][k];
-      std::array<float, 4>& tangent = tangents[part.triangles[t][k]];
-      const auto side = static_cast<float>(sign);
-      if (tangent[3] != 0 && tangent[3] != side) return std::nullopt;
-      for (int c = 0; c < 3; ++c) tangent[static_cast<std::size_t>(c)] = static_cast<float>(direction[c]);
-      tangent[3] = side;
-    }
-  for (auto& tangent : tangents)
-    if (tangent[3] == 0) tangent[3] = 1;  // A vertex of no triangle.
-  return tangents;
-}
-
 void add_tangents(Document& document, const ModelPart& part,
                   const std::vector<std::array<float, 4>>& tangents) {
   constexpr int array_buffer = 34962, floats = 5126;
@@ -69,7 +51,7 @@ Result<void> write_tangents(const Model& model, std::span<const BakeTarget> targ
     if (target.slot != MaterialSlot::normal || has_texture(model, target)) continue;
     for (const std::uint32_t index : target.parts) {
       const ModelPart& part = model.parts[index];
-      if (!part.tangents.empty()) continue;
+      if (!part.tangents.empty() || part.mirrored) continue;
       if (!geometry) {
         APPLIQUE_TRY(const Buffers buffers, read_buffers(model.document));
         APPLIQUE_TRY(geometry, decode_geometry(model.document, buffers));
@@ -77,11 +59,21 @@ Result<void> write_tangents(const Model& model, std::span<const BakeTarget> targ
       APPLIQUE_TRY(const auto own, in_own_space(part, *geometry));
       if (!own) continue;
       const auto tangents =
-          tangents_by_vertex(*own, tangent_frames(*own, slot_uvs(model, part, MaterialSlot::normal)));
+          vertex_tangents(*own, tangent_frames(*own, slot_uvs(model, part, MaterialSlot::normal)));
       if (tangents) add_tangents(document, part, *tangents);
     }
   }
   return {};
+}
+
+void make_tangents(OverlayMesh& overlay) {
+  if (overlay.joints_mirror) return;
+  ModelPart part;
+  part.positions = overlay.positions;
+  part.normals = overlay.normals;
+  part.triangles = overlay.triangles;
+  if (auto tangents = vertex_tangents(part, tangent_frames(part, overlay.uvs)))
+    overlay.tangents = std::move(*tangents);
 }
 
 }  // namespace applique

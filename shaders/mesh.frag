@@ -17,18 +17,20 @@ layout(location = 0) out vec4 colour;
 // Lambert's law with the terminator moved beyond the edge, so that it fades instead of cutting.
 float wrapped(vec3 n, vec3 light, float reach) { return max(0.0, (dot(n, light) + reach) / (1.0 + reach)); }
 
-// The normal map's vector in the frame of the texture's u and, against its v, which points down.
+// The normal map's vector in the frame that glTF prescribes: the tangent along the texture's u, the bitangent at a
+// right angle to it, on the side against v, which points down.
 vec3 with_relief(vec3 n) {
   vec3 px = dFdx(world_position), py = dFdy(world_position);
   vec2 ux = dFdx(texture_place), uy = dFdy(texture_place);
-  vec3 across_y = cross(py, n), across_x = cross(n, px);
-  float side = dot(px, across_y) < 0.0 ? -1.0 : 1.0;
-  vec3 along_u = side * (across_y * ux.x + across_x * uy.x), along_v = side * (across_y * ux.y + across_x * uy.y);
-  float longest = max(dot(along_u, along_u), dot(along_v, along_v));
-  if (longest <= 0.0) return n;
+  float side = ux.x * uy.y - uy.x * ux.y < 0.0 ? -1.0 : 1.0;
+  vec3 along_u = side * (px * uy.y - py * ux.y), along_v = side * (py * ux.x - px * uy.x);
+  along_u -= n * dot(n, along_u);
+  if (dot(along_u, along_u) <= 0.0) return n;
+  vec3 tangent = normalize(along_u), bitangent = cross(n, tangent);
+  if (dot(bitangent, along_v) > 0.0) bitangent = -bitangent;
   vec3 stored = 2.0 * texture(relief, texture_place).xyz - 1.0;
   stored.xy *= draw.normal_scale;
-  return normalize((along_u * stored.x - along_v * stored.y) * inversesqrt(longest) + n * stored.z);
+  return normalize(tangent * stored.x + bitangent * stored.y + n * stored.z);
 }
 
 void main() {

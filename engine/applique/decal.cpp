@@ -40,7 +40,7 @@ constexpr double much_stretched = 1.1;        // L2
 constexpr double usual_margin = 0.08;         // of a patch's faces
 constexpr double nearly_all = 0.99;           // of the region
 constexpr double hardly_any = 0.005;          // of a patch's faces
-constexpr int last_embeddings = 2;            // after the first of the final patch
+constexpr int most_refinements = 2;           // after the first of the final patch
 constexpr double little_regard = 0.1;         // for the surface beyond the image
 constexpr double less_isometry = 0.6;         // where all is much stretched
 constexpr double most_coverage = 1.005;       // beyond it a map overlaps itself
@@ -200,15 +200,15 @@ class Solver {
     ++map_.solves;
     std::vector<Vec2> features(targets_.size());
     std::vector<Vec2> plane;
+    const bool guided = options_.guide && !options.rough && groups_.count == 1;
     {
       StageTimer stage(map_.times.embed);
       // The last embedding, undone to the surface's scale, is where an isometric one may start from.
       std::vector<Vec2> start;
       for (const PatchPoint& point : points_) start.push_back(point.plane / scale_);
-      const std::vector<PlacedPoint> guide = options_.guide && !options.rough && groups_.count == 1
-                                                 ? placed_features(disc, growth, scale_)
-                                                 : std::vector<PlacedPoint>();
-      weights_ = options.rough ? std::vector<double>() : weights_of(disc);
+      const std::vector<PlacedPoint> guide =
+          guided ? placed_features(disc, growth, scale_) : std::vector<PlacedPoint>();
+      if (!options.rough) weigh(disc);
       Embedding embedding =
           embed_disc(measure_disc(disc), {options.energy, options.rough, guide, weights_}, start);
       rung_ = embedding.rung;
@@ -216,34 +216,37 @@ class Solver {
       for (std::size_t k = 0; k < features.size(); ++k)
         features[k] = interpolate(disc, growth.feature_faces()[k], input_.features[k].surface, plane);
       for (std::size_t v = 0; v < plane.size(); ++v) points_[PatchVertexId(v)].plane = plane[v];
-      choose_groups(disc, growth, features);
+      if (!guided) choose_groups(disc, growth, features);
       APPLIQUE_CHECK(align(disc, growth, features, plane));
     }
     StageTimer stage(map_.times.warp);
     for (std::size_t v = 0; v < plane.size(); ++v) points_[PatchVertexId(v)].plane = plane[v];
     warp_points(disc, growth, plane, features);
+    // Of an embedding that is drawn to the features they ask the same, and leave nothing to the warp.
+    if (!guided)
+      map_.stress =
+          measure_stress(features, targets_, warp_pairs(map_.graph, targets_.size(), groups_), warp_);
     return {};
   }
 
-  /// How much the triangles count: those beyond the image less than others.
-  [[nodiscard]] std::vector<double> weights_of(const ImmersedDisc& disc) const {
-    std::vector<double> weights;
-    for (const PatchFace& face : disc.faces()) {
-      const auto& v = face.vertices;
-      const bool shown =
-          input_.region.meets_triangle(points_[v[0]].image, points_[v[1]].image, points_[v[2]].image);
-      weights.push_back(shown ? 1 : little_regard);
-    }
-    return weights;
+  [[nodiscard]] bool shows(const PatchFace& face) const {
+    const auto& v = face.vertices;
+    return input_.region.meets_triangle(points_[v[0]].image, points_[v[1]].image, points_[v[2]].image);
   }
 
-  /// Whether the image shows other triangles than those that counted in the last embedding.
+  /// Triangles count in full from when the image first shows them: a set that only grows comes to an end.
+  void weigh(const ImmersedDisc& disc) {
+    weights_.resize(disc.faces().size(), little_regard);
+    for (PatchFaceId q : ids<PatchFaceId>(weights_.size()))
+      if (shows(disc.faces()[q])) weights_[q.value] = 1;
+  }
+
+  /// Whether the image shows more than a few triangles that did not count in the last embedding.
   [[nodiscard]] bool shows_others(const ImmersedDisc& disc) const {
-    const std::vector<double> weights = weights_of(disc);
     std::size_t others = 0;
-    for (std::size_t q = 0; q < weights.size(); ++q)
-      others += q >= weights_.size() || weights[q] != weights_[q];
-    return static_cast<double>(others) > hardly_any * static_cast<double>(weights.size());
+    for (PatchFaceId q : ids<PatchFaceId>(disc.faces().size()))
+      others += (q.value >= weights_.size() || weights_[q.value] < 1) && shows(disc.faces()[q]);
+    return static_cast<double>(others) > hardly_any * static_cast<double>(disc.faces().size());
   }
 
   /// The features in the disc's triangles, and their places in the image at `scale` plane units to one.
@@ -377,6 +380,7 @@ class Solver {
   Result<void> grow(ImmersedDisc& disc, Growth& growth) {
     Energy energy = Energy::conformal;
     bool padded = false;
+    int refinements = 0;
     while (true) {
       APPLIQUE_CHECK(parameterize(disc, growth, {energy, !padded}));
       if (options_.trace != nullptr) trace_step(disc, growth);
@@ -398,7 +402,7 @@ class Solver {
         if (energy != attempt_.energy) {
           energy = attempt_.energy;
         } else if (padded) {
-          break;
+          if (energy == Energy::conformal || !shows_others(disc) || ++refinements > most_refinements) break;
         } else if (may_cover_more(disc, growth)) {
           growth.set_cover_limit(growth.cover_limit() + 1);
           if (growth.grow(points_, inside, scale_, {}) > 0) energy = Energy::conformal;
@@ -410,8 +414,6 @@ class Solver {
       growth.compact(points_);
       APPLIQUE_ASSERT(!checks_patch(options_) || disc.broken_invariant().empty());
     }
-    for (int k = 0; k < last_embeddings && energy != Energy::conformal && shows_others(disc); ++k)
-      APPLIQUE_CHECK(parameterize(disc, growth, {energy, false}));
     map_.status = growth.coverage(points_);
     return {};
   }
@@ -511,9 +513,7 @@ class Solver {
       points_[v].plane = points_[v].image = unfolded.image[v.value];
     warp_ = {};
     groups_ = {};
-    WarpStress stress = std::move(map_.stress);  // of the warp that there was
     describe(disc, growth);
-    map_.stress = std::move(stress);
   }
 
   /// The decal as it is: all of the map but its warnings.
@@ -540,18 +540,15 @@ class Solver {
     mark_linear_faces(growth);
     map_.quality = measure_quality(surface_, map_.patch, map_.plane, map_.image, map_.textured, map_.warp,
                                    input_.region, map_.influence);
-    std::vector<Vec2> places;
     for (std::size_t k = 0; k < targets_.size(); ++k) {
       const auto& corners = disc.faces()[growth.feature_faces()[k]].vertices;
       const std::vector<double> influence =
           map_.influence_at(corners, input_.features[k].surface.barycentric);
-      places.push_back(
-          interpolate(disc, growth.feature_faces()[k], input_.features[k].surface, map_.plane.raw()));
-      map_.quality.feature_residual.push_back(std::abs(map_.warp(places[k], influence) - targets_[k]) *
+      const Vec2 place =
+          interpolate(disc, growth.feature_faces()[k], input_.features[k].surface, map_.plane.raw());
+      map_.quality.feature_residual.push_back(std::abs(map_.warp(place, influence) - targets_[k]) *
                                               input_.region.frame().pixels_per_unit());
     }
-    map_.stress =
-        measure_stress(places, targets_, warp_pairs(map_.graph, targets_.size(), groups_), map_.warp);
   }
 
   void order_sheets(const Growth& growth) {
@@ -717,10 +714,10 @@ Result<DecalMap> solve_decal(const SurfaceMesh& surface, const DecalInput& input
   attempt({Crossings::one_sheet, true, options.energy}, sounder);
   if (crossed && !(map && is_sound(*map) && map->quality.l2_stretch < hardly_stretched))
     attempt({Crossings::overlap, true, options.energy}, sounder);
-  // Parts that only touch in the plane, not on the surface: without groups it may go with fewer folds.
-  if (map && map->groups > 1 && map->sheets == 1 && folds(*map) > 0)
-    attempt({Crossings::one_sheet, false, options.energy},
-            [](const DecalMap& a, const DecalMap& b) { return folds(a) < folds(b); });
+  // Parts that only touch in the plane, not on the surface: it may be better without groups.
+  if (map && map->groups > 1 && map->sheets == 1 &&
+      (folds(*map) > 0 || map->quality.l2_stretch > much_stretched))
+    attempt({Crossings::one_sheet, false, options.energy}, sounder);
   // Where all is much stretched, what the image does not show may be stretched instead; and lengths that
   // cannot be kept lead the growth less astray when they count less.
   if (map && options.energy != Energy::conformal && may_stretch_elsewhere(*map))

@@ -95,7 +95,9 @@ struct DecalMap {
   FeatureGraph graph;
   Coverage status = Coverage::not_converged;
   MapQuality quality;
-  WarpStress stress;  ///< What the features ask of `warp`; empty by methods that bend the image otherwise.
+  /// What the features ask of the warp of an embedding that is not drawn to them; empty by methods that bend
+  /// the image otherwise.
+  WarpStress stress;
   SolveTimes times;
   int solves = 0;
   std::vector<Warning> warnings;

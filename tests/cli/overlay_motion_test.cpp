@@ -182,6 +182,7 @@ class OverlayMotion : public testing::Test {
                     {{{"name", "flag"},
                       {"image", "image.png"},
                       {"output", "overlay"},
+                      {"energy", "conformal"},
                       {"offset", offset},
                       {"mirrored", mirrored},
                       {"features",

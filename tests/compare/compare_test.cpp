@@ -103,6 +103,21 @@ TEST(Compare, EveryCaseHasARowOfEveryMethod) {
             static_cast<std::ptrdiff_t>(comparison.rows.size()) + 1);
 }
 
+/// Where maps differ most: on most of a sphere, and round a spike. (The whole table takes two minutes.)
+TEST(Compare, TheDefaultIsStretchedLeastFlipsNothingAndMeetsEveryPin) {
+  for (const char* surface : {"sphere-2.6/", "bump/"}) {
+    Comparison comparison = cases(surface);
+    solve_cases(comparison, contenders(), [](const CaseName&) { return false; });
+    const MethodSummary ours = summarise(comparison.rows).front();
+    ASSERT_EQ(ours.method, "isometric");
+    EXPECT_EQ(ours.solved, ours.rows) << surface;
+    EXPECT_GE(ours.least_l2, 0.75 * ours.rows) << surface;
+    EXPECT_LE(ours.worst_ratio, 1.01) << surface;
+    EXPECT_EQ(ours.flips, 0U) << surface;
+    EXPECT_LT(ours.worst_residual_px, 1e-9) << surface;
+  }
+}
+
 TEST(Compare, PinsAreWhereThePictureIsUndistorted) {
   const Comparison comparison = cases("plane/star/9");
   const Site& site = comparison.sites.at(0);

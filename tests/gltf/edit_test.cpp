@@ -259,11 +259,17 @@ OverlayMesh make_overlay() {
   return overlay;
 }
 
+OverlayMaterial material_of(const std::vector<std::uint8_t>& png) {
+  OverlayMaterial material;
+  material.textures[MaterialSlot::base_color] = png;
+  return material;
+}
+
 TEST(AddOverlay, IsANamedMeshOfTheScene) {
   Document document = make_document({0}, {{0}}, 1);
   const auto png = make_png(8, teal);
-  const std::size_t node =
-      add_overlay(document, "crest", make_overlay(), add_overlay_material(document, "crest", png));
+  const std::size_t node = add_overlay(document, "crest", make_overlay(),
+                                       add_overlay_material(document, "crest", material_of(png)));
   const Model model = decode_model(document).value();
   ASSERT_EQ(model.parts.size(), 2u);
   const ModelPart& part = model.parts[1];
@@ -297,7 +303,7 @@ TEST_P(EditedModels, ReportNothingNewToTheValidator) {
       set_slot_image(document, materials[0], MaterialSlot::base_color, make_png(16, teal));
     }
     add_overlay(document, "crest", make_overlay(),
-                add_overlay_material(document, "crest", make_png(8, teal)));
+                add_overlay_material(document, "crest", material_of(make_png(8, teal))));
     const auto output = folder / (std::to_string(names.size()) + "_" + path.stem().string() + GetParam());
     const auto saved = save_document(document, output);
     ASSERT_TRUE(saved) << path << ": " << saved.error().message;

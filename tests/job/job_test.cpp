@@ -226,6 +226,25 @@ INSTANTIATE_TEST_SUITE_P(
             "job.json: /decals/0/blend: found \"dissolve\", expected a blend mode: normal, multiply, screen, "
             "overlay, darken, lighten, color-dodge, color-burn, hard-light, soft-light, difference, "
             "exclusion, hue, saturation, color, luminosity, add, erase"},
+        Fault{"/decals/0/layers", R"({"normal": {"image": "n.png", "blend": "erase"}})",
+              "job.json: /decals/0/layers/normal/blend: found \"erase\", expected a blend mode for normal "
+              "maps: normal, add"},
+        Fault{"/decals/0/layers", R"({"roughness": {"value": 0.5, "blend": "hue"}})",
+              "job.json: /decals/0/layers/roughness/blend: found \"hue\", expected a blend mode for numbers: "
+              "normal, multiply, screen, overlay, darken, lighten, color-dodge, color-burn, hard-light, "
+              "soft-light, difference, exclusion, add"},
+        Fault{
+            "/decals/0/layers", R"({"baseColor": {"blend": "dissolve"}})",
+            "job.json: /decals/0/layers/baseColor/blend: found \"dissolve\", expected a blend mode: normal, "
+            "multiply, screen, overlay, darken, lighten, color-dodge, color-burn, hard-light, soft-light, "
+            "difference, exclusion, hue, saturation, color, luminosity, add, erase"},
+        Fault{
+            "/decals/0/energy", "\"angles\"",
+            "job.json: /decals/0/energy: found \"angles\", expected \"isometric\" (keeps lengths, the "
+            "default), \"conformal\" (keeps angles only), or a number between: 1 is isometric, 0 conformal"},
+        Fault{"/decals/0/layers", R"({"baseColor": false})",
+              "job.json: /decals/0/layers: found no layer beside \"baseColor\": false on decal 'tiger', of "
+              "which nothing would be seen, expected a layer"},
         Fault{
             "/decals/0/method", "\"lscm\"",
             "job.json: /decals/0/method: found \"lscm\", expected \"applique\", \"paper\" (the paper's own "
@@ -287,6 +306,16 @@ TEST_F(JobTest, TellsEveryFaultAtOnce) {
   EXPECT_NE(message.find("/decals/0/features/1/uv: found \"here\""), std::string::npos) << message;
 }
 
+TEST_F(JobTest, AnOverlayHasAColour) {
+  json job = valid_job();
+  job["decals"][0]["layers"] = {{"baseColor", false}, {"roughness", 0.5}};
+  EXPECT_TRUE(load(job));
+  job["decals"][0]["output"] = "overlay";
+  EXPECT_EQ(message_of(job),
+            "job.json: /decals/0/layers/baseColor: found false on the overlay 'tiger', which lies over the "
+            "surface and cannot leave its colour in place, expected a base colour, or \"output\": \"bake\"");
+}
+
 TEST_F(JobTest, DecalsHaveNamesOfTheirOwn) {
   json job = valid_job();
   job["decals"].push_back(job["decals"][0]);
@@ -297,7 +326,7 @@ TEST_F(JobTest, DecalsHaveNamesOfTheirOwn) {
 }
 
 TEST(Schema, EveryPlaceIsDescribed) {
-  // What an error expects is read from the descriptions, so none may be missing.
+  // What an error expects is read from the descriptions, so none may be missing, nor in a choice.
   for (const json& schema : {job_schema(), report_schema()}) {
     const std::function<void(const json&, const std::string&)> check = [&](const json& node,
                                                                            const std::string& at) {
@@ -309,6 +338,8 @@ TEST(Schema, EveryPlaceIsDescribed) {
           check(property.value(), place);
         }
       if (node.contains("items") && node["items"].is_object()) check(node["items"], at + "/items");
+      for (const char* choices : {"anyOf", "oneOf"})
+        for (const json& choice : node.value(choices, json::array())) check(choice, at + "/" + choices);
     };
     check(schema, "");
     for (const auto& definition : schema["definitions"].items()) {

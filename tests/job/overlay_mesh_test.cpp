@@ -10,6 +10,7 @@
 
 #include "cli/command.h"
 #include "cli/small_model.h"
+#include "overlay_layers.h"
 #include "overlay_layout.h"
 #include "solve_job.h"
 
@@ -20,7 +21,8 @@ namespace {
 
 constexpr int image_size = 256;
 
-/// The image on a plane of few, large triangles, bent strongly by features that no similarity fits.
+/// The image on a plane of few, large triangles, bent strongly by features that no similarity fits; all by
+/// the warp, since the conformal embedding of a plane is one.
 class OverlayMeshTest : public testing::Test {
  protected:
   void SetUp() override {
@@ -38,6 +40,7 @@ class OverlayMeshTest : public testing::Test {
           json::array({{{"name", "bent"},
                         {"image", "image.png"},
                         {"opacity", 0.5},
+                        {"energy", "conformal"},
                         {"features",
                          {pin(64, 64, -0.3, 0.25), pin(192, 64, 0.25, 0.2), pin(128, 128, 0.06, -0.03),
                           pin(64, 192, -0.25, -0.25), pin(192, 192, 0.25, -0.3)}}}})}});
@@ -49,6 +52,13 @@ class OverlayMeshTest : public testing::Test {
   }
 
   const SolvedDecal& decal() const { return job_.decals.front(); }
+  static Image draw(const OverlayLayout& layout, MaterialSlot slot, const Image& image) {
+    const OverlayPicture shown = {slot, image};
+    return draw_pictures(layout.chart, {&shown, 1}).front().image;
+  }
+  Image base_colour() {
+    return make_overlay_layers(job_.model, job_.decals.front()).value().pictures.front().image;
+  }
 
   CommandFolder folder_;
   SolvedJob job_;
@@ -196,6 +206,7 @@ TEST_F(OverlayMeshTest, OnASkinTrianglesStayWholeAndThePictureIsBent) {
   job_.model.document.json["nodes"][0]["skin"] = 0;
   job_.decals.front().image = make_ramp();
   const OverlayLayout layout = lay_out_overlay(job_.model, decal(), 0.01);
+  const Image picture = draw(layout, MaterialSlot::base_color, base_colour());
   EXPECT_FALSE(layout.divided_skin);
   const DecalMap& map = decal().map;
   EXPECT_EQ(layout.mesh.triangles.size(), std::count(map.textured.begin(), map.textured.end(), char(1)));
@@ -216,14 +227,45 @@ TEST_F(OverlayMeshTest, OnASkinTrianglesStayWholeAndThePictureIsBent) {
       const Pixel exact = decal().region.frame().to_pixel(map.warp(plane));
       if (std::min(exact.x, exact.y) < 2 || std::max(exact.x, exact.y) > image_size - 2) continue;
       const std::uint16_t* texel =
-          layout.picture.pixel(int(uv.real() * layout.picture.width), int(uv.imag() * layout.picture.height));
+          picture.pixel(int(uv.real() * picture.width), int(uv.imag() * picture.height));
       EXPECT_NEAR(texel[0] / 257.0, exact.x - 0.5, 1);
       EXPECT_NEAR(texel[1] / 257.0, exact.y - 0.5, 1);
       EXPECT_EQ(texel[3], 0x8000) << "the decal's opacity";
       ++compared;
     }
   EXPECT_GT(compared, 500);
-  EXPECT_EQ(layout.picture.pixel(0, 0)[3], 0) << "nothing around it";
+  EXPECT_EQ(picture.pixel(0, 0)[3], 0) << "nothing around it";
+}
+
+TEST_F(OverlayMeshTest, NormalsTurnWhereThePictureIsBent) {
+  job_.model.document.json["nodes"][0]["skin"] = 0;
+  const OverlayLayout layout = lay_out_overlay(job_.model, decal(), 0.01);
+  const Vec3 relief = Vec3(0.6, 0.3, 0.8).normalized();
+  std::array<std::uint16_t, 4> stored = {0, 0, 0, 65535};
+  for (int c = 0; c < 3; ++c)
+    stored[c] = static_cast<std::uint16_t>(std::lround(65535 * (0.5 + 0.5 * relief[c])));
+  const Image picture = draw(layout, MaterialSlot::normal, make_image(image_size, image_size, stored));
+  // Where a step along the image's x comes from is the direction of that x in the picture.
+  const ImageFrame& frame = decal().region.frame();
+  const auto place_of = [&](Pixel pixel) {
+    return frame.to_pixel(decal().map.warp.backward(frame.to_plane(pixel)));
+  };
+  double least = 10, most = -10;
+  for (double y = 20; y < image_size; y += 31)
+    for (double x = 20; x < image_size; x += 31) {
+      const Pixel from = place_of({x, y}), to = place_of({x + 0.5, y});
+      const Vec2 along = Vec2(to.x - from.x, from.y - to.y) / std::hypot(to.x - from.x, from.y - to.y);
+      const Vec2 shown = Vec2(relief.x(), relief.y()) * along;
+      const Eigen::Vector2d texel =
+          layout.chart.density * (Eigen::Vector2d(from.x, from.y) - layout.chart.origin);
+      const std::uint16_t* normal = picture.pixel(int(texel.x()), int(texel.y()));
+      EXPECT_NEAR(normal[0] / 65535.0, 0.5 + 0.5 * shown.real(), 0.01);
+      EXPECT_NEAR(normal[1] / 65535.0, 0.5 + 0.5 * shown.imag(), 0.01);
+      EXPECT_NEAR(normal[2] / 65535.0, 0.5 + 0.5 * relief.z(), 1e-4);
+      least = std::min(least, std::arg(along));
+      most = std::max(most, std::arg(along));
+    }
+  EXPECT_GT(most - least, 0.2) << "it is bent";
 }
 
 TEST_F(OverlayMeshTest, OnASkinAnImageThatLiesOverItselfIsDivided) {
@@ -234,11 +276,11 @@ TEST_F(OverlayMeshTest, OnASkinAnImageThatLiesOverItselfIsDivided) {
   map.influence.assign(2 * map.patch.vertices.size(), 0.5);
   const OverlayLayout layout = lay_out_overlay(job_.model, decal(), 0.01);
   EXPECT_TRUE(layout.divided_skin);
-  EXPECT_EQ(layout.picture.width, image_size);
+  EXPECT_EQ(layout.chart.width, image_size);
 }
 
 TEST_F(OverlayMeshTest, PictureCarriesTheOpacity) {
-  const Image image = overlay_image(decal());
+  const Image image = base_colour();
   EXPECT_EQ(image.channels, 4);
   EXPECT_EQ(image.pixel(128, 128)[3], 0x8000);
   EXPECT_EQ(image.pixel(128, 128)[0], decal().image.pixel(128, 128)[0]);

@@ -4,6 +4,7 @@
 #include "models/every_model.h"
 
 #include <cstdio>
+#include <fstream>
 
 #include <gtest/gtest.h>
 
@@ -81,8 +82,16 @@ TEST_F(EveryModel, TakesADecalIntoItsTextures) {
   EXPECT_GE(share_solved(rows), 0.9);
 }
 
-TEST_F(EveryModel, TakesAnOverlay) {
-  const auto rows = bake({R"({"output": "overlay"})"});
+TEST_F(EveryModel, TakesAnOverlayWithLayers) {
+  Image relief = make_image(64, 64, {0xcccc, 0x8080, 0xe666, 0xffff});
+  relief.channels = 3;
+  const std::string file = (folder_.path() / "relief.png").string();
+  const auto png = encode_png(relief).value();
+  std::ofstream(file, std::ios::binary)
+      .write(reinterpret_cast<const char*>(png.data()), static_cast<std::streamsize>(png.size()));
+  const auto rows = bake({R"({"output": "overlay", "layers": {"normal": ")" + file +
+                          R"(", "metallic": 0.3, "roughness": {"value": 0.4, "opacity": 0.5},)" +
+                          R"( "occlusion": 0.8, "emissive": [0.2, 0.1, 0]}})"});
   for (const ModelRow& row : rows) expect_solved_or_turned_down(row);
   EXPECT_GE(share_solved(rows), 0.9);
   expect_nothing_new_to_the_validator(rows);
