@@ -41,6 +41,7 @@ constexpr double usual_margin = 0.08;         // of a patch's faces
 constexpr double nearly_all = 0.99;           // of the region
 constexpr double hardly_any = 0.005;          // of a patch's faces
 constexpr int most_refinements = 2;           // after the first of the final patch
+constexpr int free_weighings = 8;             // of a patch's faces
 constexpr double little_regard = 0.1;         // for the surface beyond the image
 constexpr double less_isometry = 0.6;         // where all is much stretched
 constexpr double most_coverage = 1.005;       // beyond it a map overlaps itself
@@ -133,6 +134,13 @@ bool may_stretch_elsewhere(const DecalMap& map) {
          (beyond || map.quality.coverage < nearly_all);
 }
 
+/// Whether features ask for so much that an embedding, drawn to them, would be led astray.
+bool asks_extremes(const WarpStress& stress) {
+  const auto extreme = [](const auto& asked) { return is_extreme(asked.scale, asked.turn); };
+  return std::any_of(stress.features.begin(), stress.features.end(), extreme) ||
+         std::any_of(stress.pairs.begin(), stress.pairs.end(), extreme);
+}
+
 /// What is taken for granted in an attempt at a decal.
 struct Attempt {
   Crossings crossings;  ///< What paths are that cross on the surface.
@@ -200,7 +208,7 @@ class Solver {
     ++map_.solves;
     std::vector<Vec2> features(targets_.size());
     std::vector<Vec2> plane;
-    const bool guided = options_.guide && !options.rough && groups_.count == 1;
+    const bool guided = options_.guide && !options.rough && groups_.count == 1 && !asks_extremes(map_.stress);
     {
       StageTimer stage(map_.times.embed);
       // The last embedding, undone to the surface's scale, is where an isometric one may start from.
@@ -208,7 +216,7 @@ class Solver {
       for (const PatchPoint& point : points_) start.push_back(point.plane / scale_);
       const std::vector<PlacedPoint> guide =
           guided ? placed_features(disc, growth, scale_) : std::vector<PlacedPoint>();
-      if (!options.rough) weigh(disc);
+      if (!options.rough) weigh(growth);
       Embedding embedding =
           embed_disc(measure_disc(disc), {options.energy, options.rough, guide, weights_}, start);
       rung_ = embedding.rung;
@@ -229,24 +237,23 @@ class Solver {
     return {};
   }
 
-  [[nodiscard]] bool shows(const PatchFace& face) const {
-    const auto& v = face.vertices;
-    return input_.region.meets_triangle(points_[v[0]].image, points_[v[1]].image, points_[v[2]].image);
+  /// Triangles count in full where the image shows them, and in the end from when it first does: a set that
+  /// only grows settles.
+  void weigh(const Growth& growth) {
+    const IdVector<PatchFaceId, char> shown = growth.shown(points_);
+    if (++weighed_ <= free_weighings) weights_.clear();
+    weights_.resize(shown.size(), little_regard);
+    for (PatchFaceId q : ids<PatchFaceId>(shown.size()))
+      if (shown[q]) weights_[q.value] = 1;
   }
 
-  /// Triangles count in full from when the image first shows them: a set that only grows comes to an end.
-  void weigh(const ImmersedDisc& disc) {
-    weights_.resize(disc.faces().size(), little_regard);
-    for (PatchFaceId q : ids<PatchFaceId>(weights_.size()))
-      if (shows(disc.faces()[q])) weights_[q.value] = 1;
-  }
-
-  /// Whether the image shows more than a few triangles that did not count in the last embedding.
-  [[nodiscard]] bool shows_others(const ImmersedDisc& disc) const {
+  /// Whether the image shows other triangles, more than a few, than those that counted in the last embedding.
+  [[nodiscard]] bool shows_others(const Growth& growth) const {
+    const IdVector<PatchFaceId, char> shown = growth.shown(points_);
     std::size_t others = 0;
-    for (PatchFaceId q : ids<PatchFaceId>(disc.faces().size()))
-      others += (q.value >= weights_.size() || weights_[q.value] < 1) && shows(disc.faces()[q]);
-    return static_cast<double>(others) > hardly_any * static_cast<double>(disc.faces().size());
+    for (PatchFaceId q : ids<PatchFaceId>(shown.size()))
+      others += q.value >= weights_.size() || (shown[q] != 0) != (weights_[q.value] == 1);
+    return static_cast<double>(others) > hardly_any * static_cast<double>(shown.size());
   }
 
   /// The features in the disc's triangles, and their places in the image at `scale` plane units to one.
@@ -402,7 +409,7 @@ class Solver {
         if (energy != attempt_.energy) {
           energy = attempt_.energy;
         } else if (padded) {
-          if (energy == Energy::conformal || !shows_others(disc) || ++refinements > most_refinements) break;
+          if (energy == Energy::conformal || !shows_others(growth) || ++refinements > most_refinements) break;
         } else if (may_cover_more(disc, growth)) {
           growth.set_cover_limit(growth.cover_limit() + 1);
           if (growth.grow(points_, inside, scale_, {}) > 0) energy = Energy::conformal;
@@ -522,12 +529,9 @@ class Solver {
     map_.textured.clear();
     map_.plane.clear();
     map_.image.clear();
-    for (const PatchFace& face : map_.patch.faces) {
-      const auto& v = face.vertices;
-      map_.textured.push_back(
-          face.mesh_face.valid() &&
-          input_.region.meets_triangle(points_[v[0]].image, points_[v[1]].image, points_[v[2]].image));
-    }
+    const IdVector<PatchFaceId, char> shown = growth.shown(points_);
+    for (PatchFaceId q : ids<PatchFaceId>(shown.size()))
+      map_.textured.push_back(map_.patch.faces[q].mesh_face.valid() && shown[q]);
     for (const PatchPoint& point : points_) {
       map_.plane.push_back(point.plane);
       map_.image.push_back(point.image);
@@ -657,6 +661,7 @@ class Solver {
   std::optional<InfluenceField> influence_field_;  ///< Of groups_, while there are several.
   std::vector<double> influence_;                  ///< [vertex * groups + group], while there are several.
   std::vector<double> weights_;  ///< By triangle, in the last embedding; empty: all the same.
+  int weighed_ = 0;              ///< How often.
   EmbeddingRung rung_ = EmbeddingRung::conformal;
   std::size_t unfolded_ = 0;             ///< Triangles that were turned over before unfold().
   std::vector<std::uint32_t> at_fault_;  ///< Features that force a fold.

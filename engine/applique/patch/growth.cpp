@@ -51,19 +51,35 @@ IdVector<PatchVertexId, char> Growth::inside(const PatchPoints& points) const {
   return inside;
 }
 
-bool Growth::face_meets_region(PatchFaceId q, const PatchPoints& points) const {
-  const auto& v = disc_.faces()[q].vertices;
-  return region_.meets_triangle(points[v[0]].image, points[v[1]].image, points[v[2]].image);
+IdVector<PatchFaceId, char> Growth::shown(const PatchPoints& points) const {
+  IdVector<PatchFaceId, char> shown(disc_.faces().size(), false);
+  std::vector<PatchFaceId> stack;
+  const auto visit = [&](PatchFaceId q) {
+    if (!q.valid() || shown[q]) return;
+    shown[q] = true;
+    stack.push_back(q);
+  };
+  for (PatchFaceId q : feature_faces_) visit(q);
+  while (!stack.empty()) {
+    const PatchFace& face = disc_.faces()[stack.back()];
+    stack.pop_back();
+    const auto& v = face.vertices;
+    for (int k = 0; k < 3; ++k)
+      if (region_.meets_segment(points[v[(k + 1) % 3]].image, points[v[(k + 2) % 3]].image))
+        visit(face.neighbours[k]);
+  }
+  return shown;
 }
 
 std::size_t Growth::peel(const PatchPoints& points, const IdVector<PatchVertexId, char>& inside) {
   const std::size_t count = disc_.faces().size();
   // A face stays when it or a face round one of its corners has a vertex inside.
+  const IdVector<PatchFaceId, char> shown = this->shown(points);
   IdVector<PatchVertexId, char> near(disc_.vertex_count(), false);
   for (PatchFaceId q : ids<PatchFaceId>(count)) {
     if (!disc_.alive(q)) continue;
     const auto& v = disc_.faces()[q].vertices;
-    if (inside[v[0]] || inside[v[1]] || inside[v[2]] || face_meets_region(q, points))
+    if (inside[v[0]] || inside[v[1]] || inside[v[2]] || shown[q])
       for (PatchVertexId w : v) near[w] = true;
   }
   const auto unwanted = [&](PatchFaceId q) {
@@ -113,12 +129,13 @@ std::size_t Growth::peel_doubles(const PatchPoints& points) {
 
 std::size_t Growth::pad(PatchPoints& points) {
   const std::size_t count = disc_.faces().size();
+  const IdVector<PatchFaceId, char> shown = this->shown(points);
   IdVector<PatchVertexId, char> near(disc_.vertex_count(), false);
   std::vector<PatchFaceId> work;
   for (PatchFaceId q : ids<PatchFaceId>(count)) {
     if (!disc_.alive(q)) continue;
     work.push_back(q);
-    if (face_meets_region(q, points))
+    if (shown[q])
       for (PatchVertexId v : disc_.faces()[q].vertices) near[v] = true;
   }
   const auto touches = [&](PatchFaceId q) {
@@ -223,8 +240,12 @@ std::size_t Growth::grow(PatchPoints& points, IdVector<PatchVertexId, char>& ins
   const int rings = std::max(limits.rings, static_cast<int>(limits.share * std::sqrt(faces)));
   note_cover();
   std::vector<PatchFaceId> candidates;
-  candidates.reserve(disc_.faces().size());
-  for (PatchFaceId q : ids<PatchFaceId>(disc_.faces().size())) candidates.push_back(q);
+  const IdVector<PatchFaceId, char> shown = this->shown(points);
+  for (PatchFaceId q : ids<PatchFaceId>(shown.size())) {
+    if (!disc_.alive(q)) continue;
+    const auto& v = disc_.faces()[q].vertices;
+    if (shown[q] || inside[v[0]] || inside[v[1]] || inside[v[2]]) candidates.push_back(q);
+  }
   std::size_t added = 0;
   for (int ring = 0; ring < rings && disc_.live_faces() < most && !candidates.empty(); ++ring) {
     std::vector<PatchFaceId> fresh;
@@ -325,8 +346,9 @@ void Growth::compact(PatchPoints& points) {
 
 Coverage Growth::coverage(const PatchPoints& points) const {
   Coverage worst = Coverage::covered;
-  for (PatchFaceId q : ids<PatchFaceId>(disc_.faces().size())) {
-    if (!disc_.alive(q)) continue;
+  const IdVector<PatchFaceId, char> shown = this->shown(points);
+  for (PatchFaceId q : ids<PatchFaceId>(shown.size())) {
+    if (!disc_.alive(q) || !shown[q]) continue;
     const PatchFace& face = disc_.faces()[q];
     for (int k = 0; k < 3; ++k) {
       if (face.neighbours[k].valid()) continue;

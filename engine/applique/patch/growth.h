@@ -40,6 +40,10 @@ class Growth {
   /// Vertices inside the region that are connected with a feature through such vertices: the set S of §5.2.1.
   [[nodiscard]] IdVector<PatchVertexId, char> inside(const PatchPoints& points) const;
 
+  /// Faces that meet the region and are connected with a feature within it. What else lies over the region in
+  /// the plane, wound round through what lies outside, is no part of the decal.
+  [[nodiscard]] IdVector<PatchFaceId, char> shown(const PatchPoints& points) const;
+
   /// Removes faces that lie outside the region together with their one-rings, and those that cover again what
   /// their own sheet covers. Returns how many.
   std::size_t peel(const PatchPoints& points, const IdVector<PatchVertexId, char>& inside);
@@ -87,7 +91,6 @@ class Growth {
                                         const IdVector<PatchVertexId, char>& inside,
                                         std::span<const PatchFaceId> candidates) const;
   ImmersedDisc::Glue glue(PatchFaceId q, int k, PatchPoints& points, IdVector<PatchVertexId, char>& inside);
-  [[nodiscard]] bool face_meets_region(PatchFaceId q, const PatchPoints& points) const;
   /// Whether a patch face over f other than `self` lies where the triangle of the image does, or nearby.
   [[nodiscard]] bool covered_nearby(FaceId f, const std::array<Vec2, 3>& image, const PatchPoints& points,
                                     PatchFaceId self = {}) const;
