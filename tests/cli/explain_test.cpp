@@ -44,6 +44,7 @@ class ExplainTest : public testing::Test {
           json::array({{{"name", "crest"},
                         {"image", "image.png"},
                         {"method", method},
+                        {"guide", false},  // leaves the warp something to do
                         {"features", json::array({feature(10, 10, 0), feature(54, 10, 0), feature(54, 54, 0),
                                                   feature(10, 54, 0), feature(32, 32, 0.08)})}}})}});
   }
