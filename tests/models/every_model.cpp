@@ -116,8 +116,10 @@ std::vector<ModelRow> bake_every_model(const std::filesystem::path& command,
   std::ofstream(image, std::ios::binary)
       .write(reinterpret_cast<const char*>(png.data()), static_cast<std::streamsize>(png.size()));
   std::vector<ModelRow> rows;
+  std::size_t number = 0;
   for (const char* below : {"gltf", "derived/gltf"})
     for (const auto& path : models_below(data / below)) {
+      if (number++ % wish.every != 0) continue;
       const std::string name = path.lexically_relative(data).string();
       std::string stem = name.substr(0, name.find_last_of('.'));
       std::replace(stem.begin(), stem.end(), '/', '-');

@@ -27,6 +27,7 @@ struct ModelRow {
 struct DecalWish {
   std::string members = "{}";  ///< JSON.
   double larger = 1;           ///< Times the size that fits on the piece.
+  std::size_t every = 1;       ///< Only each model whose number is a multiple of this.
 };
 
 /// Puts a decal on the largest smooth piece of every model below `data`/gltf and `data`/derived/gltf, by the
