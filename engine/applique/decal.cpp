@@ -39,6 +39,9 @@ constexpr double hardly_stretched = 1.1;      // L2, of a map to which there is 
 constexpr double much_stretched = 1.1;        // L2
 constexpr double usual_margin = 0.08;         // of a patch's faces
 constexpr double nearly_all = 0.99;           // of the region
+constexpr double little_scaled = 1.25;        // by features
+constexpr double little_turned = 0.26;        // by features, radians
+constexpr double little_shifted = 0.05;       // by features, of the region's diameter
 constexpr double hardly_any = 0.005;          // of a patch's faces
 constexpr int most_refinements = 2;           // after the first of the final patch
 constexpr int free_weighings = 8;             // of a patch's faces
@@ -134,11 +137,16 @@ bool may_stretch_elsewhere(const DecalMap& map) {
          (beyond || map.quality.coverage < nearly_all);
 }
 
-/// Whether features ask for so much that an embedding, drawn to them, would be led astray.
-bool asks_extremes(const WarpStress& stress) {
-  const auto extreme = [](const auto& asked) { return is_extreme(asked.scale, asked.turn); };
-  return std::any_of(stress.features.begin(), stress.features.end(), extreme) ||
-         std::any_of(stress.pairs.begin(), stress.pairs.end(), extreme);
+/// Whether the features ask for little enough for the embedding to give it. One that is bent far to meet them
+/// bends at the features alone, where the warp does so smoothly.
+bool ask_little(const WarpStress& stress, double diameter) {
+  const auto little = [](const auto& asked) {
+    return std::abs(std::log(asked.scale)) < std::log(little_scaled) && std::abs(asked.turn) < little_turned;
+  };
+  return std::all_of(stress.pairs.begin(), stress.pairs.end(), little) &&
+         std::all_of(stress.features.begin(), stress.features.end(), [&](const FeatureStress& asked) {
+           return little(asked) && asked.shift < little_shifted * diameter;
+         });
 }
 
 /// What is taken for granted in an attempt at a decal.
@@ -208,7 +216,8 @@ class Solver {
     ++map_.solves;
     std::vector<Vec2> features(targets_.size());
     std::vector<Vec2> plane;
-    const bool guided = options_.guide && !options.rough && groups_.count == 1 && !asks_extremes(map_.stress);
+    const bool guided = options_.guide && !options.rough && groups_.count == 1 &&
+                        ask_little(map_.stress, input_.region.diameter());
     {
       StageTimer stage(map_.times.embed);
       // The last embedding, undone to the surface's scale, is where an isometric one may start from.

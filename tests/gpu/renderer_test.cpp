@@ -91,6 +91,21 @@ TEST_F(RendererTest, InterpolatesTexturesOfAnySize) {
   }
 }
 
+/// Filters that go over all texels under a pixel would not come to an end.
+TEST_F(RendererTest, ShowsTheMeanOfWhatRepeatsTooOften) {
+  const Image fine = waves(512);
+  for (const float often : {1e3F, 1e6F, 1e9F, 1e20F}) {
+    std::vector<RenderMesh> meshes = {square(&fine)};
+    for (auto& uv : meshes[0].uvs) uv = {often * uv[0], 0.3F * often * uv[1] + often * uv[0]};
+    const Image repeated = render(device(), meshes, front(), small).value();
+    const Image mean = make_image(1, 1, {full / 2, full / 2, full / 2, full});
+    meshes[0].base_colour = &mean;
+    const Image expected = render(device(), meshes, front(), small).value();
+    for (int c = 0; c < 3; ++c)
+      EXPECT_NEAR(repeated.pixel(100, 100)[c] / 257.0, expected.pixel(100, 100)[c] / 257.0, 8) << often;
+  }
+}
+
 TEST_F(RendererTest, HidesWhatIsBehind) {
   for (const bool near_first : {false, true}) {
     std::vector<RenderMesh> meshes = {coloured_square({1, 0, 0, 1}, -0.1F),
