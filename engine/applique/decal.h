@@ -59,7 +59,7 @@ enum class Overlap {
 struct SolveOptions {
   Method method = Method::applique;
   Energy energy = Energy::isometric;  ///< The paper's method is always conformal.
-  /// Draws the last embedding to the features, which leaves less to the warp; not a conformal one.
+  /// Draws the last embedding to the features where they ask little of the warp; not a conformal one.
   bool guide = true;
   Overlap overlap = Overlap::stop;
   PlanarLimits planar;                ///< Of Method::planar.

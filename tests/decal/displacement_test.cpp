@@ -78,17 +78,18 @@ bool fits(const Region& region, const std::vector<Vec2>& places) {
 
 /// Each place moved by up to 30 % of the region, or some of them turned about their middle by up to 170
 /// degrees.
-std::vector<Vec2> displaced(const Region& region, const std::vector<Vec2>& places, std::mt19937& random) {
+std::vector<Vec2> displaced(const Region& region, const std::vector<Vec2>& places, std::mt19937& random,
+                            double share) {
   for (int tries = 0; tries < 1000; ++tries) {
     std::vector<Vec2> moved = places;
     if (random() % 2 == 0) {
-      const double reach = uniform(random, 0, 0.3) * region.diameter();
+      const double reach = share * uniform(random, 0, 0.3) * region.diameter();
       for (Vec2& z : moved) z += std::polar(reach * std::sqrt(uniform(random, 0, 1)), uniform(random, -4, 4));
     } else {
       const std::size_t count = 2 + random() % (moved.size() - 1);
       Vec2 middle = 0;
       for (std::size_t k = 0; k < count; ++k) middle += moved[k] / double(count);
-      const Vec2 turn = std::polar(1.0, uniform(random, -170, 170) * std::numbers::pi / 180);
+      const Vec2 turn = std::polar(1.0, share * uniform(random, -170, 170) * std::numbers::pi / 180);
       for (std::size_t k = 0; k < count; ++k) moved[k] = middle + turn * (moved[k] - middle);
     }
     if (fits(region, moved)) return moved;
@@ -96,8 +97,9 @@ std::vector<Vec2> displaced(const Region& region, const std::vector<Vec2>& place
   return places;
 }
 
-/// A decal whose features lie where an undistorted image would have them, then displaced in the image.
-DecalInput displaced_decal(const Shape& shape, std::uint32_t seed) {
+/// A decal whose features lie where an undistorted image would have them, then displaced in the image; by
+/// `share` of as far as any.
+DecalInput displaced_decal(const Shape& shape, std::uint32_t seed, double share = 1) {
   std::mt19937 random(seed);
   DecalInput input{"displaced", random_region(random), {}, {}};
   const SurfacePoint middle = shapes::nearest(shape.mesh, shape.near);
@@ -119,7 +121,7 @@ DecalInput displaced_decal(const Shape& shape, std::uint32_t seed) {
     else
       places.pop_back();
   }
-  places = displaced(input.region, places, random);
+  places = displaced(input.region, places, random, share);
   for (std::size_t k = 0; k < places.size(); ++k) input.features[k].image = frame.to_pixel(places[k]);
   return input;
 }
@@ -155,12 +157,13 @@ double left_to_the_warp(const DecalInput& input, const DecalMap& map) {
   return std::sqrt(sum / static_cast<double>(input.features.size()));
 }
 
+/// Of little displacements; large ones are left to the warp.
 TEST(Displacements, AreLessWorkForTheWarpWithAGuide) {
   for (const Shape& shape : shapes_to_cover()) {
     constexpr int count = 12;
     std::vector<std::array<double, 2>> work(count), stretch(count);
     parallel_for(count, [&](int i) {
-      const DecalInput input = displaced_decal(shape, static_cast<std::uint32_t>(i));
+      const DecalInput input = displaced_decal(shape, static_cast<std::uint32_t>(i), 0.07);
       for (const bool guide : {false, true}) {
         SolveOptions options;
         options.guide = guide;
@@ -176,7 +179,7 @@ TEST(Displacements, AreLessWorkForTheWarpWithAGuide) {
       without += work[i][0], with += work[i][1];
       by_stretch += std::log(stretch[i][1] / stretch[i][0]) / count;
     }
-    EXPECT_LT(with, 0.95 * without) << shape.name;
+    EXPECT_LT(with, 0.7 * without) << shape.name;
     EXPECT_LT(by_stretch, 0) << shape.name;
     std::printf("%s: a guide leaves %.2f of the shifts and %.3f times the L2 stretch\n", shape.name.c_str(),
                 with / without, std::exp(by_stretch));
