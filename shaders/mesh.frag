@@ -14,14 +14,6 @@ layout(location = 1) in vec3 world_normal;
 layout(location = 2) in vec2 texture_place;
 layout(location = 0) out vec4 colour;
 
-// The texture there; its mean where more than a whole one falls into a pixel, or no float tells places apart. Mesa's
-// anisotropic filter would go over such a span texel by texel, be it behind a branch that is not taken.
-vec4 texel(sampler2D image) {
-  vec2 dx = dFdx(texture_place), dy = dFdy(texture_place);
-  bool whole = !(dot(dx, dx) + dot(dy, dy) < 1.0);
-  return textureGrad(image, whole ? vec2(0.5) : texture_place, whole ? vec2(1.0, 0.0) : dx, whole ? vec2(0.0, 1.0) : dy);
-}
-
 // Lambert's law with the terminator moved beyond the edge, so that it fades instead of cutting.
 float wrapped(vec3 n, vec3 light, float reach) { return max(0.0, (dot(n, light) + reach) / (1.0 + reach)); }
 
@@ -36,13 +28,13 @@ vec3 with_relief(vec3 n) {
   if (dot(along_u, along_u) <= 0.0) return n;
   vec3 tangent = normalize(along_u), bitangent = cross(n, tangent);
   if (dot(bitangent, along_v) > 0.0) bitangent = -bitangent;
-  vec3 stored = 2.0 * texel(relief).xyz - 1.0;
+  vec3 stored = 2.0 * texture(relief, texture_place).xyz - 1.0;
   stored.xy *= draw.normal_scale;
   return normalize(tangent * stored.x + bitangent * stored.y + n * stored.z);
 }
 
 void main() {
-  vec4 base = texel(base_colour) * draw.base_colour;
+  vec4 base = texture(base_colour, texture_place) * draw.base_colour;
   if (draw.alpha_mode == alpha_mask && base.a < draw.cutoff) discard;
 
   vec3 view = normalize(frame.eye.xyz - world_position);
@@ -52,7 +44,7 @@ void main() {
   if (!gl_FrontFacing) n = -n;
   if (draw.normal_scale > 0.0) n = with_relief(n);
 
-  vec2 material = texel(metallic_roughness).bg * vec2(draw.metallic, draw.roughness);
+  vec2 material = texture(metallic_roughness, texture_place).bg * vec2(draw.metallic, draw.roughness);
   float metal = material.x, rough = clamp(material.y, 0.15, 1.0);
   float sky = 0.5 + 0.5 * dot(n, frame.up.xyz);
   vec3 diffuse = mix(vec3(0.20, 0.185, 0.175), vec3(0.36, 0.375, 0.40), sky);
@@ -70,7 +62,7 @@ void main() {
   float mirrored = smoothstep(-0.2 - 0.6 * rough, 0.2 + 0.6 * rough, dot(reflect(-view, n), frame.up.xyz));
   vec3 around = mix(vec3(0.18, 0.17, 0.16), vec3(0.85, 0.88, 0.92), mirrored) + 0.8 * gloss;
   vec3 lit = mix(base.rgb * diffuse + specular, base.rgb * around + 0.1 * specular, metal);
-  lit += draw.emissive.rgb * texel(emissive).rgb;
+  lit += draw.emissive.rgb * texture(emissive, texture_place).rgb;
 
   float alpha = draw.alpha_mode == alpha_blend ? base.a : 1.0;
   colour = vec4(lit * alpha, alpha);  // Premultiplied.

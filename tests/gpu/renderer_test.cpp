@@ -5,6 +5,8 @@
 
 #include <gtest/gtest.h>
 
+#include "applique/image/decal_image.h"
+
 #include "gpu/gpu_fixture.h"
 
 namespace applique {
@@ -98,7 +100,11 @@ TEST_F(RendererTest, ShowsTheMeanOfWhatRepeatsTooOften) {
     std::vector<RenderMesh> meshes = {square(&fine)};
     for (auto& uv : meshes[0].uvs) uv = {often * uv[0], 0.3F * often * uv[1] + often * uv[0]};
     const Image repeated = render(device(), meshes, front(), small).value();
-    const Image mean = make_image(1, 1, {full / 2, full / 2, full / 2, full});
+    double light = 0;
+    for (int x = 0; x < fine.width; ++x)
+      light += srgb_to_linear(fine.pixel(x, 0)[0] / double{full}) / fine.width;
+    const auto grey = static_cast<std::uint16_t>(std::lround(full * linear_to_srgb(light)));
+    const Image mean = make_image(1, 1, {grey, grey, grey, full});
     meshes[0].base_colour = &mean;
     const Image expected = render(device(), meshes, front(), small).value();
     for (int c = 0; c < 3; ++c)

@@ -169,14 +169,29 @@ bool has_odd_sides(const Image* image) {
   return image != nullptr && (is_odd(image->width) || is_odd(image->height));
 }
 
+// Whether no triangle is so long in the texture that many repeats of it may fall into a pixel.
+bool repeats_seldom(const RenderMesh& mesh) {
+  constexpr float most = 16;  // repeats along a side
+  if (mesh.uvs.empty()) return true;
+  return std::all_of(mesh.triangles.begin(), mesh.triangles.end(), [&](const auto& corners) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto& from = mesh.uvs[corners[k]];
+      const auto& to = mesh.uvs[corners[(k + 1) % 3]];
+      if (!(std::hypot(to[0] - from[0], to[1] - from[1]) < most)) return false;
+    }
+    return true;
+  });
+}
+
 // Whether the device's anisotropic filter may show the meshes. Mesa's llvmpipe takes the wrong texels of
-// textures whose sides are no powers of two: edges become stairs even where it magnifies them. Without it for
-// one, then without it for all: surface looks the same through either.
+// textures whose sides are no powers of two, so that edges become stairs even where it magnifies them, and
+// goes over all texels that fall into a pixel, which may take for ever. Without it for one, then without it
+// for all: a surface looks the same through either.
 bool filters_anisotropically(const Device& device, std::span<const RenderMesh> meshes) {
   return device.properties().deviceType != VK_PHYSICAL_DEVICE_TYPE_CPU ||
-         std::none_of(meshes.begin(), meshes.end(), [](const RenderMesh& mesh) {
-           return has_odd_sides(mesh.base_colour) || has_odd_sides(mesh.metallic_roughness) ||
-                  has_odd_sides(mesh.normal) || has_odd_sides(mesh.emissive);
+         std::all_of(meshes.begin(), meshes.end(), [](const RenderMesh& mesh) {
+           return !has_odd_sides(mesh.base_colour) && !has_odd_sides(mesh.metallic_roughness) &&
+                  !has_odd_sides(mesh.normal) && !has_odd_sides(mesh.emissive) && repeats_seldom(mesh);
          });
 }
 
