@@ -1,11 +1,11 @@
 #include "output_file.h"
 
-#include <array>
 #include <cerrno>
 #include <csignal>
 #include <cstdio>
 #include <cstring>
-#include <memory>
+#include <deque>
+#include <string>
 #include <system_error>
 
 #include <fmt/format.h>
@@ -14,40 +14,62 @@
 namespace applique {
 namespace {
 
-// What a signal handler may touch: the name of the temporary file, and whether there is one.
-std::array<char, 4096> temporary_name = {};
-volatile std::sig_atomic_t temporary_exists = 0;
+/// Keeps interrupts waiting while it is there.
+class InterruptsHeld {
+ public:
+  InterruptsHeld() {
+    sigset_t held;
+    sigemptyset(&held);
+    sigaddset(&held, SIGINT);
+    sigaddset(&held, SIGTERM);
+    pthread_sigmask(SIG_BLOCK, &held, &before_);
+  }
+  ~InterruptsHeld() { pthread_sigmask(SIG_SETMASK, &before_, nullptr); }
+  InterruptsHeld(const InterruptsHeld&) = delete;
+  InterruptsHeld& operator=(const InterruptsHeld&) = delete;
+
+ private:
+  sigset_t before_;
+};
+
+/// The temporary files that there are. Changed with interrupts held, so that their handler may read it.
+std::vector<std::string>& temporaries() {
+  static std::vector<std::string> names;
+  return names;
+}
 
 void handle_interrupt(int signal) {
-  if (temporary_exists != 0) unlink(temporary_name.data());
+  for (const std::string& name : temporaries()) unlink(name.c_str());
   _exit(128 + signal);
 }
 
 /// Removes the file when it goes, unless it was renamed before.
 class TemporaryFile {
  public:
-  explicit TemporaryFile(std::filesystem::path path) : path_(std::move(path)) {
-    const std::string name = path_.string();
-    if (name.size() >= temporary_name.size()) return;
-    std::memcpy(temporary_name.data(), name.c_str(), name.size() + 1);
-    temporary_exists = 1;
+  explicit TemporaryFile(const std::filesystem::path& target)
+      : target_(target),
+        path_(target.parent_path() / fmt::format(".{}.{}.tmp", target.filename().string(), getpid())) {
+    const InterruptsHeld held;
+    temporaries().push_back(path_.string());
   }
   ~TemporaryFile() {
-    temporary_exists = 0;
+    const InterruptsHeld held;
     std::error_code ignored;
     if (!renamed_) std::filesystem::remove(path_, ignored);
+    std::erase(temporaries(), path_.string());
   }
   TemporaryFile(const TemporaryFile&) = delete;
   TemporaryFile& operator=(const TemporaryFile&) = delete;
 
+  [[nodiscard]] const std::filesystem::path& target() const { return target_; }
   [[nodiscard]] const std::filesystem::path& path() const { return path_; }
-  bool rename_to(const std::filesystem::path& target) {
-    renamed_ = std::rename(path_.c_str(), target.c_str()) == 0;
+  bool put_in_place() {
+    renamed_ = std::rename(path_.c_str(), target_.c_str()) == 0;
     return renamed_;
   }
 
  private:
-  std::filesystem::path path_;
+  std::filesystem::path target_, path_;
   bool renamed_ = false;
 };
 
@@ -101,12 +123,21 @@ Result<void> check_writable(const std::filesystem::path& path) {
   return {};
 }
 
-Result<void> write_file(const std::filesystem::path& path, std::span<const std::uint8_t> bytes) {
-  APPLIQUE_CHECK(check_writable(path));
-  TemporaryFile temporary(path.parent_path() / fmt::format(".{}.{}.tmp", path.filename().string(), getpid()));
-  if (!write_all(temporary.path(), bytes) || !temporary.rename_to(path))
-    return unwritable(path, std::strerror(errno));
+Result<void> write_files(std::span<const OutputFile> files) {
+  for (const OutputFile& file : files) APPLIQUE_CHECK(check_writable(file.path));
+  std::deque<TemporaryFile> temporary;
+  for (const OutputFile& file : files) {
+    temporary.emplace_back(file.path);
+    if (!write_all(temporary.back().path(), file.bytes)) return unwritable(file.path, std::strerror(errno));
+  }
+  for (TemporaryFile& file : temporary)
+    if (!file.put_in_place()) return unwritable(file.target(), std::strerror(errno));
   return {};
+}
+
+Result<void> write_file(const std::filesystem::path& path, std::span<const std::uint8_t> bytes) {
+  const OutputFile file{path, bytes};
+  return write_files({&file, 1});
 }
 
 Result<void> write_file(const std::filesystem::path& path, std::string_view text) {
@@ -114,6 +145,7 @@ Result<void> write_file(const std::filesystem::path& path, std::string_view text
 }
 
 void remove_temporary_on_interrupt() {
+  temporaries();  // made before a handler may ask for it
   std::signal(SIGINT, handle_interrupt);
   std::signal(SIGTERM, handle_interrupt);
   // A file that grows over the system's limit is a write that fails, not the end.

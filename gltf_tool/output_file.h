@@ -10,6 +10,15 @@
 
 namespace applique {
 
+struct OutputFile {
+  std::filesystem::path path;
+  std::span<const std::uint8_t> bytes;
+};
+
+/// Writes files that belong together: all to temporary files beside them first, then all renamed, so that a
+/// failed write leaves what was there before. Errors: those of write_file.
+Result<void> write_files(std::span<const OutputFile> files);
+
 /// Writes a file so that nobody ever sees half of it: to a temporary file beside it (".NAME.PID.tmp"), then
 /// renamed. The temporary file is removed on failure. Errors: output_unwritable, with the system's reason.
 Result<void> write_file(const std::filesystem::path& path, std::span<const std::uint8_t> bytes);
@@ -27,8 +36,8 @@ std::filesystem::path full_path(const std::filesystem::path& path);
 Result<void> check_distinct(const std::vector<std::filesystem::path>& outputs,
                             const std::vector<std::filesystem::path>& inputs);
 
-/// From here on an interrupt (SIGINT, SIGTERM) removes the temporary file that is being written, and ends the
-/// process. A file over the system's size limit is an error of the write.
+/// From here on an interrupt (SIGINT, SIGTERM) removes the temporary files that are being written, and ends
+/// the process. A file over the system's size limit is an error of the write.
 void remove_temporary_on_interrupt();
 
 }  // namespace applique

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cctype>
+#include <fstream>
+#include <iterator>
 #include <limits>
 #include <map>
 #include <set>
@@ -178,14 +180,38 @@ class SideFiles {
       if (required) return tl::unexpected<Error>(bytes.error());
       return {};
     }
-    fs::path name = is_new ? fs::path(stem_ + "_" + uri) : fs::path(percent_decode(uri)).lexically_normal();
-    if (is_new || *name.begin() == ".." || is_kept(name)) {
-      name = free_name(name.stem().string(), name.extension().string());
+    fs::path name = fs::path(is_new ? uri : percent_decode(uri)).lexically_normal();
+    const bool outside = *name.begin() == "..";
+    if (outside) name = name.filename();
+    const bool taken = outside && used_.contains(percent_encode(name.string()));
+    if (is_new || taken || is_kept(name) || is_another(name, *bytes))
+      name = name_after_output(name.filename());
+    if (is_new || percent_decode(uri) != name.string()) {
       renamed->second = percent_encode(name.string());
       entry["uri"] = renamed->second;
     }
+    used_.insert(percent_encode(name.string()));
     files_.push_back({name, std::move(*bytes)});
     return {};
+  }
+
+  /// Whether the output's folder has a file of this name with other bytes, which may belong to another model.
+  [[nodiscard]] bool is_another(const fs::path& name, const std::vector<std::uint8_t>& bytes) const {
+    std::error_code error;
+    const auto size = fs::file_size(folder_ / name, error);
+    if (error) return fs::exists(folder_ / name, error);
+    if (size != bytes.size()) return true;
+    std::ifstream file(folder_ / name, std::ios::binary);
+    const std::vector<char> there{std::istreambuf_iterator<char>(file), {}};
+    return !std::equal(there.begin(), there.end(), bytes.begin(), bytes.end(),
+                       [](char a, std::uint8_t b) { return static_cast<std::uint8_t>(a) == b; });
+  }
+
+  /// A free name that begins with the output's own, so that outputs in one folder do not take each other's.
+  std::string name_after_output(const fs::path& name) {
+    const std::string stem = name.stem().string();
+    const bool has_it = stem == stem_ || stem.starts_with(stem_ + "_");
+    return free_name(has_it ? stem : stem_ + "_" + stem, name.extension().string());
   }
 
   std::string free_name(const std::string& stem, const std::string& extension) {
@@ -210,17 +236,21 @@ class SideFiles {
   std::vector<SideFile> files_;
 };
 
-Result<void> write_side_files(const std::vector<SideFile>& files, const fs::path& folder) {
-  for (const SideFile& file : files) {
-    const fs::path path = folder / file.path;
+/// The document's own file, and those beside it.
+Result<void> write_all(const fs::path& path, std::span<const std::uint8_t> bytes,
+                       const std::vector<SideFile>& beside) {
+  std::vector<OutputFile> files;
+  for (const SideFile& file : beside) {
+    files.push_back({path.parent_path() / file.path, file.bytes});
+    const fs::path folder = files.back().path.parent_path();
     std::error_code error;
-    if (path.has_parent_path()) fs::create_directories(path.parent_path(), error);
+    if (!folder.empty()) fs::create_directories(folder, error);
     if (error)
       return fail(ErrorCode::output_unwritable,
-                  fmt::format("{}: its folder cannot be made: {}", path.string(), error.message()));
-    APPLIQUE_CHECK(write_file(path, std::span<const std::uint8_t>(file.bytes)));
+                  fmt::format("{}: cannot be made: {}", folder.string(), error.message()));
   }
-  return {};
+  files.push_back({path, bytes});
+  return write_files(files);
 }
 
 }  // namespace
@@ -245,12 +275,12 @@ Result<void> save_document(const Document& document, const fs::path& path,
   SideFiles side_files(output, path, keep);
   if (!as_glb && output.chunk_buffer) side_files.name_chunk();
   APPLIQUE_TRY(const auto files, side_files.collect());
-  APPLIQUE_CHECK(write_side_files(files, path.parent_path()));
   if (as_glb) {
     APPLIQUE_TRY(const auto bytes, to_glb(output, path));
-    return write_file(path, std::span<const std::uint8_t>(bytes));
+    return write_all(path, bytes, files);
   }
-  return write_file(path, output.json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
+  const std::string text = output.json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  return write_all(path, {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()}, files);
 }
 
 }  // namespace applique

@@ -44,7 +44,7 @@ void log_decals(const SolvedJob& job) {
     spdlog::info(
         "{}: {} features within {:.1g} px, {} triangles, {} flipped, L2 stretch {:.3f}, {:.2f} % covered",
         decal.job.name, decal.features.size(), residual, decal.map.patch.faces.size(),
-        quality.flipped_plane + quality.flipped_image, quality.l2_stretch, 100 * quality.coverage);
+        std::max(quality.flipped_plane, quality.flipped_image), quality.l2_stretch, 100 * quality.coverage);
   }
 }
 

@@ -1,11 +1,14 @@
 #include "document.h"
 
 #include <cstring>
+#include <fstream>
+#include <iterator>
 
 #include <gtest/gtest.h>
 
 #include "gltf/test_models.h"
 #include "model.h"
+#include "output_file.h"
 #include "save_document.h"
 #include "uri.h"
 
@@ -235,6 +238,41 @@ TEST(SaveDocument, LeavesNoTemporaryFileBehind) {
     names.push_back(entry.path().filename());
   std::sort(names.begin(), names.end());
   EXPECT_EQ(names, (std::vector<std::string>{"out.bin", "out.gltf"}));
+}
+
+/// As exporters name them alike, files of two models meet in one folder; the second gets a name of its own.
+TEST(SaveDocument, LeavesFilesOfOtherModelsAlone) {
+  const TemporaryFolder folder;
+  for (const char* name : {"a", "b"}) {
+    std::filesystem::create_directories(folder / name);
+    write_text(folder / name / "skin.png", name);
+    write_text(folder / name / "scene.gltf", R"({"asset":{"version":"2.0"},"images":[{"uri":"skin.png"}]})");
+  }
+  std::filesystem::create_directories(folder / "out");
+  for (int again = 0; again < 2; ++again)
+    for (const std::string name : {"a", "b"}) {
+      const auto document = load_document(folder / name / "scene.gltf").value();
+      ASSERT_TRUE(save_document(document, folder / "out" / (name + ".gltf")));
+    }
+  for (const std::string name : {"a", "b"}) {
+    const auto saved = load_document(folder / "out" / (name + ".gltf")).value();
+    const auto bytes = read_image_bytes(saved, 0).value();
+    EXPECT_EQ(std::string(bytes.begin(), bytes.end()), name);
+  }
+}
+
+/// The files of a .gltf are put in place together or not at all.
+TEST(SaveDocument, LeavesWhatWasThereWhereItFails) {
+  const TemporaryFolder folder;
+  write_text(folder / "m.bin", "before");
+  const std::string text = "after";
+  const std::span bytes{reinterpret_cast<const std::uint8_t*>(text.data()), text.size()};
+  // The second name is allowed, but leaves no room for that of a temporary file.
+  const std::vector<OutputFile> files = {{folder / "m.bin", bytes}, {folder / std::string(254, 'x'), bytes}};
+  EXPECT_FALSE(write_files(files));
+  std::ifstream file(folder / "m.bin");
+  EXPECT_EQ(std::string(std::istreambuf_iterator<char>(file), {}), "before");
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder.path()), {}), 1);
 }
 
 TEST(SaveDocument, BringsFilesFromOutsideTheFolderAlong) {
