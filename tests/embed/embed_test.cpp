@@ -8,8 +8,8 @@
 #include "applique/embed/align.h"
 #include "applique/embed/arap.h"
 #include "applique/embed/boundary_first.h"
-#include "applique/embed/mean_value.h"
 #include "applique/embed/least_stretch.h"
+#include "applique/embed/mean_value.h"
 
 #include "support/shapes.h"
 
@@ -130,8 +130,7 @@ TEST(Tutte, TurnsNothingOver) {
 TEST(LeastStretch, FindsTheIsometryOfAPlane) {
   const Disc d(shapes::plane(12, 9, 2, 1, 0.3));
   const DiscGeometry geometry = measure_disc(d.disc);
-  const std::vector<Vec2> plane =
-      relax_stretch(geometry, embed_on_circle(geometry), {1, 1000, 1e-13});
+  const std::vector<Vec2> plane = relax_stretch(geometry, embed_on_circle(geometry), {1, 1000, 1e-13});
   EXPECT_EQ(count_flips(geometry, plane), 0u);
   EXPECT_LT(length_error(geometry, plane), 1e-4);
 }
