@@ -198,8 +198,9 @@ Result<std::vector<BakeTarget>> plan_bake(const SolvedJob& job, Document& docume
     ground.decals_by_part[index] = decals;
   }
   std::vector<BakeTarget> list;
-  for (auto& [material, ground] : grounds)
+  for (const auto& entry : grounds)
     for (const MaterialSlot slot : all_slots) {
+      const Ground& ground = entry.second;
       BakeTarget target = ground.target;
       target.slot = slot;
       for (const std::size_t d : ground.decals)
