@@ -18,9 +18,10 @@ namespace {
 
 constexpr int largest_side = 8192;
 constexpr int best_grid = 64;
-constexpr double slimmest = 32;      // length to width of what a circle on the surface is in a layout
-constexpr double coarsest = 32;      // pixels to a texel, along a line
-constexpr double fine_enough = 0.5;  // texels to a pixel: below, a bake warns
+constexpr double slimmest = 32;       // length to width of what a circle on the surface is in a layout
+constexpr double coarsest = 32;       // pixels to a texel, along a line
+constexpr double most_blurred = 0.1;  // of the decals' pixels
+constexpr double fine_enough = 0.5;   // texels to a pixel: below, a bake warns
 
 std::array<Vec3, 3> surface_corners(const SolvedJob& job, const SeparatedTriangle& t) {
   const ModelPart& part = job.model.parts[t.part];
@@ -302,22 +303,32 @@ class Packing {
   std::vector<AtlasChart> charts_;
 };
 
-/// The odd number of texels along an old one at which the decals keep their detail.
+/// The odd number of texels along an old one at which nearly all of the decals' pixels keep their detail: not
+/// their mean, since old layouts may be much denser in places than in others.
 int wanted_fineness(const SolvedJob& job, const LayoutRequest& request,
                     const std::vector<AtlasChart>& charts) {
-  double texels = 0;
+  std::vector<std::pair<double, double>> triangles;  // Texels along a pixel; pixels.
   double pixels = 0;
   for (const AtlasChart& chart : charts) {
     if (!chart.kept) continue;
     for (const std::uint32_t i : chart.triangles) {
       const SeparatedTriangle& t = request.triangles[i];
-      texels += 0.5 * std::abs(doubled_area(texels_of(job, t, request.texture)));
-      pixels += pixels_on(job, t);
+      const double there = pixels_on(job, t);
+      if (there == 0) continue;
+      const double texels = 0.5 * std::abs(doubled_area(texels_of(job, t, request.texture)));
+      triangles.emplace_back(std::sqrt(texels / there), there);
+      pixels += triangles.back().second;
     }
   }
-  if (texels == 0 || texels >= fine_enough * fine_enough * pixels) return 1;
-  const auto needed = static_cast<int>(std::ceil(std::sqrt(pixels / texels)));
-  return needed | 1;
+  std::sort(triangles.begin(), triangles.end());
+  double texels = fine_enough;
+  double blurred = 0;
+  for (const auto& [along, there] : triangles) {
+    blurred += there;
+    texels = along;
+    if (blurred > most_blurred * pixels) break;
+  }
+  return texels < 0.99 * fine_enough ? static_cast<int>(std::ceil(1 / texels)) | 1 : 1;
 }
 
 std::string no_room(const SolvedJob& job, const LayoutRequest& request) {

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -204,6 +205,27 @@ TEST_F(UvConflictTest, KeepsSkinsAndMorphTargets) {
   }
   EXPECT_EQ(primitives[1]["targets"].size(), 1u);
   expect_valid("out.glb");
+}
+
+/// Half of the triangles under the decal have more texels than it has pixels, the others next to none.
+TEST_F(UvConflictTest, KeepsDetailWhereTheOldTextureHasLittleRoom) {
+  SmallMesh wall = make_mirrored_wall();
+  for (auto& uv : wall.uvs) uv[0] = uv[0] > 0.75 ? 1 - 3.6 * (1 - uv[0]) : 0.07 + 0.04 * uv[0];
+  write_model({wall});
+  json job = job_at(0.5, 0);
+  job["texture_size"] = 2048;
+  bake(job);
+  const Model after = load("out.glb");
+  double texels = 0;  // across the narrow half, 32 pixels of the decal
+  for (const ModelPart& part : after.parts) {
+    std::map<double, double> u;
+    for (std::size_t i = 0; i < part.uvs.size(); ++i)
+      if (part.positions[i].y() == 0) u[part.positions[i].x()] = part.uvs[i][0];
+    if (!u.contains(0.5) || !u.contains(1)) continue;
+    const auto image = after.materials[*part.material].image;
+    texels = std::max(texels, std::abs(u[1] - u[0.5]) * load_model_image(after, *image).value().width);
+  }
+  EXPECT_GT(texels, 5) << "it was 1.3";
 }
 
 TEST_F(UvConflictTest, ErrorNamesTheDecalTheMaterialAndTheTexels) {
