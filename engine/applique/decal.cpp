@@ -732,8 +732,8 @@ Result<DecalMap> solve_decal(const SurfaceMesh& surface, const DecalInput& input
   if (map && map->groups > 1 && map->sheets == 1 &&
       (folds(*map) > 0 || map->quality.l2_stretch > much_stretched))
     attempt({Crossings::one_sheet, false, options.energy}, sounder);
-  // Where all is much stretched, what the image does not show may be stretched instead; and lengths that
-  // cannot be kept lead the growth less astray when they count less.
+  // Where all is much stretched, lengths that cannot be kept lead the growth less astray when they count
+  // less.
   if (map && options.energy != Energy::conformal && may_stretch_elsewhere(*map))
     attempt({crossed && map->sheets > 1 ? Crossings::overlap : Crossings::one_sheet, true,
              Energy{less_isometry * options.energy.isometry}},

@@ -28,47 +28,44 @@ Growth::Growth(ImmersedDisc& disc, std::vector<PatchFaceId> feature_faces, const
                std::uint32_t cover_limit)
     : disc_(disc), feature_faces_(std::move(feature_faces)), region_(region), cover_limit_(cover_limit) {}
 
-IdVector<PatchVertexId, char> Growth::inside(const PatchPoints& points) const {
-  // A flood of the faces with a vertex inside. The fan of a vertex hangs together by edges at that vertex, so
-  // that it is enough to cross the edges that have such an end.
-  IdVector<PatchVertexId, char> inside(disc_.vertex_count(), false);
+template <class Visit, class Crosses>
+IdVector<PatchFaceId, char> Growth::flood(const Visit& visit, const Crosses& crosses) const {
   IdVector<PatchFaceId, char> seen(disc_.faces().size(), false);
   std::vector<PatchFaceId> stack;
-  const auto visit = [&](PatchFaceId q) {
+  const auto reach = [&](PatchFaceId q) {
     if (!q.valid() || seen[q]) return;
     seen[q] = true;
     stack.push_back(q);
   };
-  for (PatchFaceId q : feature_faces_) visit(q);
+  for (PatchFaceId q : feature_faces_) reach(q);
   while (!stack.empty()) {
     const PatchFace& face = disc_.faces()[stack.back()];
     stack.pop_back();
     const auto& v = face.vertices;
-    for (PatchVertexId w : v) inside[w] = inside[w] || region_.contains(points[w].image);
+    visit(v);
     for (int k = 0; k < 3; ++k)
-      if (inside[v[(k + 1) % 3]] || inside[v[(k + 2) % 3]]) visit(face.neighbours[k]);
+      if (crosses(v[(k + 1) % 3], v[(k + 2) % 3])) reach(face.neighbours[k]);
   }
+  return seen;
+}
+
+IdVector<PatchVertexId, char> Growth::inside(const PatchPoints& points) const {
+  // The fan of a vertex hangs together by edges at that vertex, so that it is enough to cross the edges that
+  // have an end inside.
+  IdVector<PatchVertexId, char> inside(disc_.vertex_count(), false);
+  flood(
+      [&](const std::array<PatchVertexId, 3>& corners) {
+        for (PatchVertexId v : corners) inside[v] = inside[v] || region_.contains(points[v].image);
+      },
+      [&](PatchVertexId a, PatchVertexId b) { return inside[a] || inside[b]; });
   return inside;
 }
 
 IdVector<PatchFaceId, char> Growth::shown(const PatchPoints& points) const {
-  IdVector<PatchFaceId, char> shown(disc_.faces().size(), false);
-  std::vector<PatchFaceId> stack;
-  const auto visit = [&](PatchFaceId q) {
-    if (!q.valid() || shown[q]) return;
-    shown[q] = true;
-    stack.push_back(q);
-  };
-  for (PatchFaceId q : feature_faces_) visit(q);
-  while (!stack.empty()) {
-    const PatchFace& face = disc_.faces()[stack.back()];
-    stack.pop_back();
-    const auto& v = face.vertices;
-    for (int k = 0; k < 3; ++k)
-      if (region_.meets_segment(points[v[(k + 1) % 3]].image, points[v[(k + 2) % 3]].image))
-        visit(face.neighbours[k]);
-  }
-  return shown;
+  return flood([](const std::array<PatchVertexId, 3>&) {},
+               [&](PatchVertexId a, PatchVertexId b) {
+                 return region_.meets_segment(points[a].image, points[b].image);
+               });
 }
 
 std::size_t Growth::peel(const PatchPoints& points, const IdVector<PatchVertexId, char>& inside) {

@@ -87,6 +87,10 @@ class Growth {
     Vec2 middle;  ///< In the image: the order of gluing, so that it does not depend on how the model is
                   ///< numbered.
   };
+  /// The faces that are reached from the features across edges for which crosses(vertex, vertex);
+  /// visit(corners) is called for each before its edges are tried.
+  template <class Visit, class Crosses>
+  IdVector<PatchFaceId, char> flood(const Visit& visit, const Crosses& crosses) const;
   [[nodiscard]] std::vector<Side> front(const PatchPoints& points,
                                         const IdVector<PatchVertexId, char>& inside,
                                         std::span<const PatchFaceId> candidates) const;
