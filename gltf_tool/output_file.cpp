@@ -47,8 +47,8 @@ void handle_interrupt(int signal) {
 class TemporaryFile {
  public:
   explicit TemporaryFile(const std::filesystem::path& target)
-      : target_(target),
-        path_(target.parent_path() / fmt::format(".{}.{}.tmp", target.filename().string(), getpid())) {
+      : target_(full_path(target)),
+        path_(target_.parent_path() / fmt::format(".{}.{}.tmp", target_.filename().string(), getpid())) {
     const InterruptsHeld held;
     temporaries().push_back(path_.string());
   }
@@ -114,6 +114,9 @@ Result<void> check_writable(const std::filesystem::path& path) {
   std::error_code error;
   if (path.filename().empty() || std::filesystem::is_directory(path, error))
     return unwritable(path, "it is a folder; name a file");
+  // A device or a pipe would be replaced by a file of its name.
+  if (std::filesystem::exists(path, error) && !std::filesystem::is_regular_file(path, error))
+    return unwritable(path, "it is a device or a pipe; name a file");
   const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : ".";
   if (!std::filesystem::is_directory(folder, error))
     return unwritable(path, fmt::format("the folder {} does not exist; create it first", folder.string()));

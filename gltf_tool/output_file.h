@@ -16,7 +16,7 @@ struct OutputFile {
 };
 
 /// Writes files that belong together: all to temporary files beside them first, then all renamed, so that a
-/// failed write leaves what was there before. Errors: those of write_file.
+/// failed write leaves what was there before. Links are followed. Errors: those of write_file.
 Result<void> write_files(std::span<const OutputFile> files);
 
 /// Writes a file so that nobody ever sees half of it: to a temporary file beside it (".NAME.PID.tmp"), then
@@ -24,8 +24,8 @@ Result<void> write_files(std::span<const OutputFile> files);
 Result<void> write_file(const std::filesystem::path& path, std::span<const std::uint8_t> bytes);
 Result<void> write_file(const std::filesystem::path& path, std::string_view text);
 
-/// Whether `path` could be written: its folder exists and allows it, and it is no folder itself. For asking
-/// before the work rather than after it. Errors: output_unwritable.
+/// Whether `path` could be written: its folder exists and allows it, and it is no folder, device or pipe
+/// itself. For asking before the work rather than after it. Errors: output_unwritable.
 Result<void> check_writable(const std::filesystem::path& path);
 
 /// The one name of a file, which need not be there: absolute, links followed.

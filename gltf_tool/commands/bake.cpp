@@ -134,6 +134,7 @@ Result<void> run_bake(const BakeArguments& arguments, const CommonArguments& com
   auto baker_ready = std::async(std::launch::async, [&] { return create_baker(std::move(device)); });
   std::optional<Progress> progress(std::in_place, !common.quiet);
   APPLIQUE_TRY(SolvedJob solved, solve_job(job, show_stages(*progress, 0, solve_share)));
+  APPLIQUE_CHECK(check_distinct(outputs_of(arguments), files_of(solved.model.document)));
   ReportInput input;
   input.command = "bake";
   input.times = solved.times;

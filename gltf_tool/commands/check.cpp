@@ -78,6 +78,7 @@ Result<void> run_check(const CheckArguments& arguments, const CommonArguments& c
     APPLIQUE_TRY(solved, solve_job(job, show_stages(progress, 0, solve_share)));
     if (arguments.suggest) suggest_features(solved, show_stages(progress, solve_share, 1 - solve_share));
   }
+  APPLIQUE_CHECK(check_distinct(outputs, files_of(solved.model.document)));
   APPLIQUE_TRY(UvCheck uvs, check_uvs(solved));
   log_warnings(solved);
   log_decals(solved);

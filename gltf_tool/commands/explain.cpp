@@ -61,6 +61,7 @@ Result<void> run_explain(const ExplainArguments& arguments, const CommonArgument
   Progress progress(!common.quiet);
   constexpr double solve_share = 0.6;
   APPLIQUE_TRY(const SolvedJob solved, solve_job(job, show_stages(progress, 0, solve_share), true));
+  APPLIQUE_CHECK(check_distinct({arguments.output}, files_of(solved.model.document)));
   progress.show("drawing", solve_share);
   std::optional<Device> device;
   if (shows_model(options)) {

@@ -72,6 +72,7 @@ Result<void> run_render(const RenderArguments& arguments, const CommonArguments&
   Progress progress(!common.quiet);
   progress.show("loading the model", 0);
   APPLIQUE_TRY(const Model model, load_model(arguments.model));
+  APPLIQUE_CHECK(check_distinct(outputs, files_of(model.document)));
   APPLIQUE_TRY(const Camera camera, find_camera(arguments, model, size));
   progress.show("rendering", 0.5);
   DeviceRequest request;

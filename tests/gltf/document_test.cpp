@@ -5,6 +5,7 @@
 #include <iterator>
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include "gltf/test_models.h"
 #include "model.h"
@@ -273,6 +274,20 @@ TEST(SaveDocument, LeavesWhatWasThereWhereItFails) {
   std::ifstream file(folder / "m.bin");
   EXPECT_EQ(std::string(std::istreambuf_iterator<char>(file), {}), "before");
   EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder.path()), {}), 1);
+}
+
+TEST(WriteFile, ReplacesNoPipeAndFollowsLinks) {
+  const TemporaryFolder folder;
+  const auto pipe = folder / "pipe";
+  ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+  EXPECT_FALSE(write_file(pipe, "text"));
+  EXPECT_TRUE(std::filesystem::is_fifo(pipe));
+  write_text(folder / "real", "before");
+  std::filesystem::create_symlink("real", folder / "link");
+  EXPECT_TRUE(write_file(folder / "link", "after"));
+  EXPECT_TRUE(std::filesystem::is_symlink(folder / "link"));
+  std::ifstream file(folder / "real");
+  EXPECT_EQ(std::string(std::istreambuf_iterator<char>(file), {}), "after");
 }
 
 TEST(SaveDocument, BringsFilesFromOutsideTheFolderAlong) {
