@@ -50,7 +50,8 @@ Json warnings_of(const std::vector<Warning>& warnings) {
 Json features_of(const SolvedDecal& decal) {
   Json list = Json::array();
   for (std::size_t i = 0; i < decal.features.size(); ++i) {
-    Json feature = feature_json(decal, decal.features[i]);
+    const Feature& solved = decal.features[i];
+    Json feature = feature_json(solved, position_of(decal.surface->mesh, solved.surface));
     feature["residual_px"] = decal.map.quality.feature_residual.at(i);
     list.push_back(std::move(feature));
   }
@@ -81,7 +82,7 @@ Json suggestions_of(const SolvedDecal& decal) {
   const auto& [stretch, add, leave_out] = *decal.suggestion;
   Json out = {{"l2", stretch}, {"add", nullptr}, {"leave_out", nullptr}};
   if (add) {
-    out["add"] = feature_json(decal, add->feature);
+    out["add"] = feature_json(add->feature, add->position);
     out["add"]["l2"] = add->l2_stretch;
   }
   if (leave_out) out["leave_out"] = {{"feature", leave_out->feature}, {"l2", leave_out->l2_stretch}};
@@ -172,8 +173,7 @@ Json textures_of(const std::vector<TextureReport>& textures) {
 
 }  // namespace
 
-Json feature_json(const SolvedDecal& decal, const Feature& feature) {
-  const Vec3 position = position_of(decal.surface->mesh, feature.surface);
+Json feature_json(const Feature& feature, const Vec3& position) {
   Json out = {{"image", {feature.image.x, feature.image.y}},
               {"position", {position.x(), position.y(), position.z()}}};
   if (feature.depth != 0) out["depth"] = feature.depth;

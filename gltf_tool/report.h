@@ -60,7 +60,7 @@ struct ReportInput {
 };
 
 /// A feature as a job file takes it: {"image": [x, y], "position": [x, y, z]}, with "depth" unless it is 0.
-nlohmann::ordered_json feature_json(const SolvedDecal& decal, const Feature& feature);
+nlohmann::ordered_json feature_json(const Feature& feature, const Vec3& position);
 
 /// The report of a run, as report.schema.json describes it.
 nlohmann::ordered_json make_report(const SolvedJob& job, const ReportInput& input);

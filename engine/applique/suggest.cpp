@@ -6,6 +6,7 @@
 
 #include "applique/base/parallel.h"
 #include "applique/decal_input.h"
+#include "applique/surface/surface_query.h"
 #include "applique/warp/build_warp.h"
 
 namespace applique {
@@ -16,13 +17,19 @@ constexpr double first_step = 0.25;      // of the compass search, share of the 
 constexpr double last_step = 0.01;       // the same
 constexpr int most_moves = 24;           // of the compass search
 constexpr double lost_coverage = 0.001;  // what a suggestion may cost of it
-constexpr double pixel_grid = 0.1;       // image points are suggested in tenths of a pixel
+constexpr double per_pixel = 10;         // image points are suggested in tenths of a pixel
+constexpr int position_digits = 6;       // of the decal's size on the surface, in suggested positions
 
 /// A correspondence that is tried out.
 struct Pin {
   Vec2 plane, image;
   double stretch = infinite;  ///< Squared L2, as the trial has it.
 };
+
+/// To the nearest multiple of 1 / `per_unit`: a short decimal fraction where that is a power of ten.
+double rounded(double x, double per_unit) {
+  return std::round(x * per_unit) / per_unit;
+}
 
 double distance_to_nearest(Vec2 z, std::span<const Vec2> places) {
   double nearest = infinite;
@@ -124,10 +131,18 @@ class Trial {
       const double off = std::abs(weights[0] * p[0] + weights[1] * p[1] + weights[2] * p[2] - pin.image);
       if (off >= nearest) continue;
       nearest = off;
-      feature = Feature{
-          region_.frame().to_pixel(pin.image), {map_.patch.faces[q].mesh_face, weights}, map_.depth[q]};
+      feature = Feature{on_grid(pin.image), {map_.patch.faces[q].mesh_face, weights}, map_.depth[q]};
     }
     return feature;
+  }
+
+  /// Scene units of surface that show the region, along one side of a square of their area.
+  [[nodiscard]] double surface_size() const { return std::sqrt(surface_area_); }
+
+  /// An image point to write down.
+  [[nodiscard]] Pixel on_grid(Vec2 image) const {
+    const Pixel at = region_.frame().to_pixel(image);
+    return {rounded(at.x, per_pixel), rounded(at.y, per_pixel)};
   }
 
  private:
@@ -219,33 +234,52 @@ class Verifier {
   SuggestOptions options_;
 };
 
-/// An image point to write down, still in the region.
-Vec2 rounded(Vec2 image, const Region& region) {
-  const Pixel at = region.frame().to_pixel(image);
-  const Vec2 near = region.frame().to_plane(
-      {pixel_grid * std::round(at.x / pixel_grid), pixel_grid * std::round(at.y / pixel_grid)});
-  return region.contains(near) ? near : image;
-}
+/// A feature as it is read back once it has been written down, and the position that is written: a feature is
+/// only worth what its rounded place is worth, where the surface is coarse or the decal all but torn.
+class Written {
+ public:
+  Written(const SurfaceMesh& surface, double size)
+      : surface_(surface),
+        query_(surface),
+        per_unit_(std::pow(10, position_digits - std::floor(std::log10(size)))) {}
+
+  [[nodiscard]] Suggestion::Added operator()(const Feature& feature) const {
+    Vec3 position = position_of(surface_, feature.surface);
+    for (double& x : position) x = rounded(x, per_unit_);
+    return {{feature.image, query_.nearest(position), feature.depth}, position, infinite};
+  }
+
+ private:
+  const SurfaceMesh& surface_;
+  SurfaceQuery query_;
+  double per_unit_;
+};
 
 std::optional<Suggestion::Added> find_further(const SurfaceMesh& surface, const DecalInput& input,
                                               const DecalMap& map, const SuggestOptions& options) {
   const Trial trial(surface, input, map);
   std::vector<Pin> pins = trial.stretched_places(options.places);
   parallel_for(static_cast<int>(pins.size()), [&](int i) {
-    pins[i].image = rounded(pins[i].image, input.region);
+    const Vec2 on_grid = input.region.frame().to_plane(trial.on_grid(pins[i].image));
+    if (input.region.contains(on_grid)) pins[i].image = on_grid;
     trial.relax(pins[i]);
   });
   std::sort(pins.begin(), pins.end(), [](const Pin& a, const Pin& b) { return a.stretch < b.stretch; });
-  pins.resize(std::min(pins.size(), options.verified));
   const Verifier verifier(surface, map, options);
+  const Written written(surface, trial.surface_size());
   std::optional<Suggestion::Added> best;
+  std::size_t gains = 0;
   for (const Pin& pin : pins) {
     const auto feature = trial.feature_at(pin);
     if (!feature) continue;
+    Suggestion::Added added = written(*feature);
     DecalInput changed = input;
-    changed.features.push_back(*feature);
+    changed.features.push_back(added.feature);
     const auto stretch = verifier.gain(changed);
-    if (stretch && (!best || *stretch < best->l2_stretch)) best = {*feature, *stretch};
+    if (!stretch) continue;
+    added.l2_stretch = *stretch;
+    if (!best || added.l2_stretch < best->l2_stretch) best = added;
+    if (++gains == options.gains) break;
   }
   return best;
 }

@@ -10,7 +10,7 @@ namespace applique {
 struct SuggestOptions {
   SolveOptions solve;         ///< As the decal was solved; the trace is not written to.
   std::size_t places = 12;    ///< Places of the image where a further feature is tried out.
-  std::size_t verified = 3;   ///< The most promising of them, which are solved in full.
+  std::size_t gains = 3;      ///< Solved in full, the most promising first, until so many are gains.
   double least_gain = 0.001;  ///< Share of the L2 stretch that a change has to take off.
 };
 
@@ -18,7 +18,8 @@ struct SuggestOptions {
 /// input, which covers as much of the region as before and turns over no more faces.
 struct Suggestion {
   struct Added {
-    Feature feature;
+    Feature feature;  ///< Its image point on tenths of a pixel, its surface point the nearest to `position`.
+    Vec3 position;    ///< In scene units, to six digits or so of the decal's size: to be written down.
     double l2_stretch;
   };
   struct LeftOut {

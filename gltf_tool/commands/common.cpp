@@ -60,7 +60,7 @@ void log_suggestions(const SolvedJob& job) {
     const auto& [stretch, add, leave_out] = *decal.suggestion;
     if (add)
       spdlog::info("{}: a further feature lowers the L2 stretch from {:.4f} to {:.4f}: {}", decal.job.name,
-                   stretch, add->l2_stretch, feature_json(decal, add->feature).dump());
+                   stretch, add->l2_stretch, feature_json(add->feature, add->position).dump());
     if (leave_out)
       spdlog::info("{}: without feature {} the L2 stretch falls from {:.4f} to {:.4f}", decal.job.name,
                    leave_out->feature, stretch, leave_out->l2_stretch);

@@ -1,6 +1,10 @@
 #include "applique/suggest.h"
 
+#include <cmath>
+
 #include <gtest/gtest.h>
+
+#include "applique/surface/surface_query.h"
 
 #include "support/shapes.h"
 
@@ -59,6 +63,27 @@ TEST(Suggest, AFurtherFeatureTakesStretchOff) {
   EXPECT_GT(solved->quality.coverage, 0.99);
   const DecalMap guided = *solve_decal(surface, input);
   EXPECT_LT(guided.quality.l2_stretch, 1.001 * suggestion.add->l2_stretch);
+}
+
+/// Where a decal is all but torn, the map jumps with the last digit of a place: a promise is of the feature
+/// as it is read back, from tenths of a pixel and the nearest surface point to six digits. Here a lone
+/// feature lays an image all round a ball.
+TEST(Suggest, KeepsItsWordWhereTheMapHangsByAThread) {
+  const SurfaceMesh surface = shapes::sphere(2, 1).weld();
+  DecalInput input = {"test", *Region::from_contour({{0, 0}, {512, 0}, {512, 512}, {0, 512}}, frame), {}, {}};
+  input.features.push_back({{256, 256}, shapes::nearest(surface, {0, 0.1, 1})});
+  input.lone = LoneFrame{5, {0, 1, 0}};
+  const DecalMap map = *solve_decal(surface, input);
+  const Suggestion suggestion = suggest_feature(surface, input, map);
+  ASSERT_TRUE(suggestion.add);
+  const Suggestion::Added& added = *suggestion.add;
+  EXPECT_EQ(added.feature.image.x, std::round(10 * added.feature.image.x) / 10);
+  EXPECT_EQ(added.feature.image.y, std::round(10 * added.feature.image.y) / 10);
+  EXPECT_EQ(position_of(surface, SurfaceQuery(surface).nearest(added.position)),
+            position_of(surface, added.feature.surface));
+  DecalInput changed = input;
+  changed.features.push_back({added.feature.image, SurfaceQuery(surface).nearest(added.position), 0});
+  EXPECT_EQ(solve_decal(surface, changed)->quality.l2_stretch, added.l2_stretch);
 }
 
 /// Other methods have no warp to relax, but may have a feature too many.
