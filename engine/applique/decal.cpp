@@ -35,10 +35,11 @@ constexpr double few_changes = 0.03;          // of a patch's faces
 constexpr int trial_solves = 6;               // after them, groups stay
 constexpr int most_refreshes = 8;             // of the vertices' influence
 constexpr int growing_refreshes = 2;          // of it while the patch is to change
-constexpr double hardly_stretched = 1.1;      // L2, of a map to which there is no need to seek another
+constexpr double bearably_stretched = 2;      // L2, in one sheet: an image that lies over itself has more
 constexpr double much_stretched = 1.1;        // L2
 constexpr double usual_margin = 0.08;         // of a patch's faces
 constexpr double nearly_all = 0.99;           // of the region
+constexpr double whole = 0.99999;             // of the region
 constexpr double little_scaled = 1.25;        // by features
 constexpr double little_turned = 0.26;        // by features, radians
 constexpr double little_shifted = 0.05;       // by features, of the region's diameter
@@ -47,7 +48,6 @@ constexpr int most_refinements = 2;           // after the first of the final pa
 constexpr int free_weighings = 8;             // of a patch's faces
 constexpr double little_regard = 0.1;         // for the surface beyond the image
 constexpr double less_isometry = 0.6;         // where all is much stretched
-constexpr double most_coverage = 1.005;       // beyond it a map overlaps itself
 constexpr double refreshed = 1e-5;            // of the region's diameter: what a last refresh moves
 
 /// The similarity that gives a lone feature's neighbourhood the wanted size and direction (§3.3 of the
@@ -107,12 +107,9 @@ std::uint32_t folds(const DecalMap& map) {
   return map.quality.flipped_plane + map.quality.flipped_image;
 }
 
-/// Whether a map is injective as far as can be told: the warp of one sheet is, whatever its triangles'
-/// corners say.
+/// Whether a map is injective.
 bool is_sound(const DecalMap& map) {
-  const bool one_sheet = map.sheets == 1 && map.groups == 1 && map.warp.steps > 0;
-  return folds(map) == 0 && (one_sheet || map.quality.coverage < most_coverage) &&
-         map.status != Coverage::not_converged;
+  return folds(map) == 0 && map.quality.doubled < hardly_doubled && map.status != Coverage::not_converged;
 }
 
 /// Whether a map is to be preferred: one without folds or overlaps, then one that shows more, then the less
@@ -411,7 +408,8 @@ class Solver {
       const Growth::Limits limits{.share = exactly ? 0.0 : 1.0};
       const std::size_t added =
           growth.grow(points_, inside, scale_, limits) + growth.fill_pockets(points_, inside, scale_);
-      const double settled = exactly ? 0 : few_changes * static_cast<double>(disc.faces().size());
+      const bool to_the_last = exactly && energy == attempt_.energy;
+      const double settled = to_the_last ? 0 : few_changes * static_cast<double>(disc.faces().size());
       if (static_cast<double>(added + peeled) <= settled) {
         // Thin patches mislead: what they say of the features' order counts once the patch is grown.
         if (mirrored_) return fail_mirrored(input_);
@@ -419,10 +417,7 @@ class Solver {
           energy = attempt_.energy;
         } else if (padded) {
           if (energy == Energy::conformal || !shows_others(growth) || ++refinements > most_refinements) break;
-        } else if (may_cover_more(disc, growth)) {
-          growth.set_cover_limit(growth.cover_limit() + 1);
-          if (growth.grow(points_, inside, scale_, {}) > 0) energy = Energy::conformal;
-        } else {
+        } else if (!grow_over_itself(disc, growth, inside)) {
           growth.pad(points_);
           padded = settled_ = true;
         }
@@ -459,6 +454,14 @@ class Solver {
       area += 0.5 * cross(points_[v[1]].plane - origin, points_[v[2]].plane - origin);
     }
     return area < most_patch_area * input_.region.area();
+  }
+
+  /// Lets the region go on over itself where it stops at itself and may, one sheet more. Returns whether that
+  /// brings any faces. The energy stays what it is: the conformal map of a patch that winds round is far off.
+  bool grow_over_itself(const ImmersedDisc& disc, Growth& growth, IdVector<PatchVertexId, char>& inside) {
+    if (!may_cover_more(disc, growth)) return false;
+    growth.set_cover_limit(growth.cover_limit() + 1);
+    return growth.grow(points_, inside, scale_, {}) > 0;
   }
 
   /// The disc as a patch over the surface alone, without what bridges its holes.
@@ -514,6 +517,9 @@ class Solver {
     describe(disc, growth);
     // Features in groups that fold one sheet are solved again without groups.
     if (folds(map_) > 0 && (groups_.count == 1 || map_.sheets > 1)) unfold(disc, growth);
+    // Only beyond the region, then, could the patch have gone on.
+    if (map_.quality.coverage > whole && map_.status != Coverage::not_converged)
+      map_.status = Coverage::covered;
     warn();
   }
 
@@ -726,7 +732,7 @@ Result<DecalMap> solve_decal(const SurfaceMesh& surface, const DecalInput& input
   // Paths that cross on the surface may mean that the image lies over itself there, or that features were
   // moved past one another in one sheet: what comes out tells.
   attempt({Crossings::one_sheet, true, options.energy}, sounder);
-  if (crossed && !(map && is_sound(*map) && map->quality.l2_stretch < hardly_stretched))
+  if (crossed && !(map && is_sound(*map) && map->quality.l2_stretch < bearably_stretched))
     attempt({Crossings::overlap, true, options.energy}, sounder);
   // Parts that only touch in the plane, not on the surface: it may be better without groups.
   if (map && map->groups > 1 && map->sheets == 1 &&

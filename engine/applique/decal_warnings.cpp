@@ -12,13 +12,14 @@
 namespace applique {
 namespace {
 
-constexpr double most_coverage = 1.005;  // beyond it the map overlaps itself
 constexpr double high_stretch = 3;
 constexpr double far_shift = 0.25;  // of the region's diameter
 constexpr double infinite = std::numeric_limits<double>::infinity();
 
-double degrees(double radians) {
-  return radians * 180 / std::numbers::pi;
+/// "-30 degrees", which the way of a warp may make more than once round.
+std::string turn_text(double radians) {
+  return fmt::format("{:.0f} degrees{}", radians * 180 / std::numbers::pi,
+                     std::abs(radians) > 2 * std::numbers::pi ? " (more than once round)" : "");
 }
 
 }  // namespace
@@ -68,9 +69,7 @@ std::vector<Warning> quality_warnings(const std::string& name, const DecalMap& m
                     is_rival(options.method)
                         ? "make it smaller, or leave out \"method\""
                         : "move the features nearer to where the image wants them, or add some"));
-  // The exact warp of one sheet cannot: what its triangles' corners measure is then how much it bends.
-  const bool one_sheet = map.sheets == 1 && map.groups == 1 && map.warp.steps > 0;
-  if (map.quality.coverage > most_coverage && !one_sheet)
+  if (map.quality.doubled > hardly_doubled)
     add("overlapping_map",
         fmt::format("parts of the region land on the surface more than once ({:.2f} % in all): the "
                     "{}",
@@ -98,18 +97,18 @@ std::vector<Warning> stress_warnings(const DecalInput& input, const DecalMap& ma
     const FeatureStress& feature = stress.features[k];
     told[k] = feature.shift > most_shift || is_extreme(feature.scale, feature.turn);
     if (told[k] != 0)
-      add(fmt::format(
-          "{} has to be moved by {:.0f} px, scaled by {:.2f} and turned by {:.0f} degrees against "
-          "its surroundings; check its place, or leave it out",
-          feature_name(input, k), feature.shift * input.region.frame().pixels_per_unit(), feature.scale,
-          degrees(feature.turn)));
+      add(
+          fmt::format("{} has to be moved by {:.0f} px, scaled by {:.2f} and turned by {} against "
+                      "its surroundings; check its place, or leave it out",
+                      feature_name(input, k), feature.shift * input.region.frame().pixels_per_unit(),
+                      feature.scale, turn_text(feature.turn)));
   }
   for (const auto& [pair, scale, turn] : stress.pairs)
     if (is_extreme(scale, turn) && told[pair[0]] == 0 && told[pair[1]] == 0)
       add(
-          fmt::format("{} and {} ask for a scale of {:.2f} and a turn of {:.0f} degrees against their "
-                      "surroundings; check that they are not swapped",
-                      feature_name(input, pair[0]), feature_name(input, pair[1]), scale, degrees(turn)));
+          fmt::format("{} and {} ask for a scale of {:.2f} and a turn of {} against their surroundings; "
+                      "check that they are not swapped",
+                      feature_name(input, pair[0]), feature_name(input, pair[1]), scale, turn_text(turn)));
   return warnings;
 }
 

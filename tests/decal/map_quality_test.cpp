@@ -48,5 +48,53 @@ TEST(MapQuality, AWarpMayTurnOverByItsInfluenceAlone) {
   EXPECT_EQ(flips(warp, {0, 1, 0, 1, 0, 1}), 0U);  // Everything moves.
 }
 
+/// Two right triangles that make up the unit square, or lie over one another, in the plane and in the image.
+MapQuality quality_of_two(const std::vector<Vec2>& plane, const std::vector<Vec2>& image) {
+  const Region region =
+      Region::from_contour({{0, 0}, {512, 0}, {512, 512}, {0, 512}}, ImageFrame{512, 512}).value();
+  const SurfaceMesh surface = shapes::plane(1, 1, 1, 1).weld();
+  Patch patch;
+  for (const FaceId f : ids<FaceId>(surface.faces.size())) {
+    const auto first = static_cast<std::uint32_t>(patch.vertices.size());
+    for (const VertexId v : surface.faces[f]) patch.vertices.push_back(v);
+    patch.faces.push_back(
+        {f, {PatchVertexId(first), PatchVertexId(first + 1), PatchVertexId(first + 2)}, {}});
+  }
+  Warp rests;
+  rests.steps = 1;
+  rests.features = 2;
+  rests.groups = 1;
+  rests.group = {0, 0};
+  rests.pairs = {{0, 1}};
+  for (int t = 0; t < 3; ++t) {
+    rests.position.insert(rests.position.end(), {Vec2(-1000, 0), Vec2(1000, 0)});
+    rests.lambda.push_back(0);
+    rests.offset.push_back(0);
+  }
+  return measure_quality(surface, patch, IdVector<PatchVertexId, Vec2>(plane),
+                         IdVector<PatchVertexId, Vec2>(image), IdVector<PatchFaceId, char>(2, 1), rests,
+                         region);
+}
+
+/// A warp may bend triangles so much that their corners enclose what others do; in the plane, where they are
+/// what they are, it shows whether they lie over one another.
+TEST(MapQuality, TellsWhatIsShownTwiceFromWhatIsBent) {
+  const std::vector<Vec2> beside = {{-0.6, -0.6}, {0.6, -0.6}, {-0.6, 0.6},
+                                    {0.6, -0.6},  {0.6, 0.6},  {-0.6, 0.6}};
+  const std::vector<Vec2> over = {{-0.6, -0.6}, {0.6, -0.6}, {-0.6, 0.6},
+                                  {-0.6, -0.6}, {0.6, -0.6}, {-0.6, 0.6}};
+  const std::vector<Vec2> large = {{-1, -1}, {1, -1}, {-1, 1}, {1, -1}, {1, 1}, {-1, 1}};
+  const std::vector<Vec2> bent = {{-1, -1}, {1, -1}, {-1, 3}, {1, -3}, {1, 1}, {-1, 1}};
+  const MapQuality square = quality_of_two(large, large);
+  EXPECT_NEAR(square.coverage, 1, 1e-12);
+  EXPECT_NEAR(square.doubled, 0, 1e-12);
+  const MapQuality bends = quality_of_two(beside, bent);
+  EXPECT_EQ(bends.doubled, 0);
+  EXPECT_EQ(bends.coverage, 1);
+  const MapQuality twice = quality_of_two(over, bent);
+  EXPECT_EQ(twice.doubled, 1);
+  EXPECT_GT(twice.coverage, 1.4);
+}
+
 }  // namespace
 }  // namespace applique

@@ -94,6 +94,26 @@ TEST(Overlap, ABeltGoesRoundACylinderOneAndAHalfTimes) {
   }
 }
 
+/// A broad label, pinned every two radians: its conformal maps on the way there are far off, and each sheet
+/// more must not throw it back to them.
+TEST(Overlap, ABroadLabelGoesRoundACylinderOverItself) {
+  const SurfaceMesh surface = shapes::cylinder(96, 60, 1, 8).weld();
+  const Region label = *Region::from_contour({{0, 0}, {1000, 0}, {1000, 512}, {0, 512}}, {1000, 512});
+  std::vector<Pin> pins;
+  for (int k = 0; k < 5; ++k)
+    pins.push_back({{100.0 + 200 * k, 256}, {std::cos(2.0 * k), std::sin(2.0 * k), 4}, double(k)});
+  SolveOptions options;
+  options.overlap = Overlap::allow;
+  const auto map = solve_decal(surface, decal(surface, label, pins), options);
+  ASSERT_TRUE(map.has_value()) << map.error().message;
+  expect_exact_and_unfolded(*map);
+  EXPECT_EQ(map->status, Coverage::covered);
+  EXPECT_LT(map->quality.l2_stretch, 1.001);
+  EXPECT_GT(map->quality.coverage, 0.9999);
+  EXPECT_EQ(map->sheets, 2U);
+  EXPECT_LT(map->solves, 30);
+}
+
 TEST(Overlap, StopsAtItselfUnlessAllowed) {
   const SurfaceMesh surface = shapes::cylinder(96, 40, 1, 4).weld();
   // Pinned on its first third only, the belt grows round and meets itself.

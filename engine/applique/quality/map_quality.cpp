@@ -43,6 +43,45 @@ std::vector<Vec2> clip(const std::vector<Vec2>& polygon, Vec2 a, Vec2 b) {
   return kept;
 }
 
+/// Of the faces whose middles the map shows, the share, by area in the plane, that others lie over there. An
+/// embedding is linear in each triangle, which makes this exact where a warp bends the triangles' images.
+double doubled_in_plane(const Patch& patch, const IdVector<PatchVertexId, Vec2>& plane,
+                        const IdVector<PatchFaceId, char>& textured, const Warp& warp, const Region& region) {
+  struct Face {
+    std::array<Vec2, 3> corners;
+    Vec2 middle;
+    double left, right, area;
+    bool doubled = false;
+  };
+  std::vector<Face> faces;
+  for (PatchFaceId q : ids<PatchFaceId>(patch.faces.size())) {
+    const auto& v = patch.faces[q].vertices;
+    const std::array<Vec2, 3> t = {plane[v[0]], plane[v[1]], plane[v[2]]};
+    const Vec2 middle = (t[0] + t[1] + t[2]) / 3.0;
+    if (!textured[q] || orientation(t[0], t[1], t[2]) <= 0 || !region.contains(warp(middle))) continue;
+    const auto [left, right] = std::minmax({t[0].real(), t[1].real(), t[2].real()});
+    faces.push_back({t, middle, left, right, cross(t[1] - t[0], t[2] - t[0])});
+  }
+  std::sort(faces.begin(), faces.end(), [](const Face& a, const Face& b) { return a.left < b.left; });
+  const auto lies_in = [](Vec2 z, const std::array<Vec2, 3>& t) {
+    return cross(t[1] - t[0], z - t[0]) > 0 && cross(t[2] - t[1], z - t[1]) > 0 &&
+           cross(t[0] - t[2], z - t[2]) > 0;
+  };
+  // A sweep from left to right: only faces whose columns overlap can lie over one another.
+  std::vector<Face*> open;
+  for (Face& face : faces) {
+    std::erase_if(open, [&](const Face* other) { return other->right < face.left; });
+    for (Face* other : open) {
+      face.doubled = face.doubled || lies_in(face.middle, other->corners);
+      other->doubled = other->doubled || lies_in(other->middle, face.corners);
+    }
+    open.push_back(&face);
+  }
+  double whole = 0, doubled = 0;
+  for (const Face& face : faces) (face.doubled ? doubled : whole) += face.doubled ? face.area / 2 : face.area;
+  return whole + doubled > 0 ? doubled / (whole + doubled) : 0;
+}
+
 }  // namespace
 
 SingularValues singular_values(const std::array<Vec3, 3>& corners, const std::array<Vec2, 3>& image) {
@@ -107,6 +146,12 @@ MapQuality measure_quality(const SurfaceMesh& surface, const Patch& patch,
     quality.area += area;
   }
   quality.coverage = image_area / region.area();
+  quality.doubled = std::max(0.0, quality.coverage - 1);
+  // What the corners of bent triangles enclose may be too much.
+  if (quality.doubled > hardly_doubled && warp.steps > 0 && warp.groups == 1) {
+    quality.doubled = doubled_in_plane(patch, plane, textured, warp, region);
+    quality.coverage = std::min(quality.coverage, 1 + quality.doubled);
+  }
   if (measured.empty()) return quality;
 
   const double normal = std::sqrt(image_area / quality.area);  // makes the total areas equal

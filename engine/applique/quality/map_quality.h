@@ -35,9 +35,13 @@ struct MapQuality {
   std::uint32_t flipped_plane = 0;       ///< Triangles turned over in the embedding.
   std::uint32_t flipped_image = 0;       ///< Triangles turned over in the image.
   double coverage = 0;                   ///< Share of the region's area that lands on the surface.
+  double doubled = 0;                    ///< Share of it that does so more than once; counted again above.
   double area = 0;                       ///< Surface area under the region, scene units squared.
   std::vector<double> feature_residual;  ///< Pixels, per feature, in the exact map.
 };
+
+/// Beyond this share of the region shown more than once, a map is not injective; less is rounding.
+constexpr double hardly_doubled = 0.005;
 
 /// All but the residuals. `plane` and `image` per patch vertex; only faces marked in `textured` are looked
 /// at. `influence`, [vertex * groups + group], is not looked at when the warp has one group.
