@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <limits>
 
+#include "applique/base/parallel.h"
+
 namespace applique {
 namespace {
 
@@ -94,6 +96,19 @@ Vec2 Warp::backward(Vec2 p, std::span<const double> influence) const {
     p += h / 6 * (k1 + 2.0 * k2 + 2.0 * k3 + k4);
   }
   return p;
+}
+
+std::vector<Vec2> warp_all(const Warp& warp, const std::vector<Vec2>& places,
+                           const std::vector<double>& influence) {
+  if (warp.steps == 0) return places;
+  const std::size_t groups = warp.groups;
+  std::vector<Vec2> warped(places.size());
+  parallel_ranges(places.size(), 256, [&](std::size_t first, std::size_t last) {
+    for (std::size_t k = first; k < last; ++k)
+      warped[k] =
+          groups == 1 ? warp(places[k]) : warp(places[k], std::span(influence).subspan(k * groups, groups));
+  });
+  return warped;
 }
 
 }  // namespace applique

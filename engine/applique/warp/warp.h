@@ -42,6 +42,11 @@ struct Warp {
   [[nodiscard]] Vec2 backward(Vec2 p, std::span<const double> influence = {}) const;
 };
 
+/// The warp at many places, on all cores; `influence`, [place * groups + group], is not looked at when there
+/// is one group.
+std::vector<Vec2> warp_all(const Warp& warp, const std::vector<Vec2>& places,
+                           const std::vector<double>& influence = {});
+
 /// How an influence counts in a warp of `groups` groups: 0 up to a threshold, 1 from 1 less the threshold,
 /// smooth between. The largest of them always counts.
 double influence_ramp(double influence, std::uint32_t groups);
