@@ -110,6 +110,29 @@ Result<void> check_lone_frame(const DecalJob& decal, std::vector<Warning>& warni
                        "edge)"));
 }
 
+/// What a job asks of a decal, other than by default, that its output or its method has no use for.
+std::vector<Warning> unused_options(const DecalJob& decal) {
+  std::vector<Warning> warnings;
+  const auto add = [&](const std::string& option, const std::string& why) {
+    warnings.push_back({option + "_ignored",
+                        fmt::format("decal '{}': '{}' is not used, because {}", decal.name, option, why)});
+  };
+  if (decal.output == DecalOutput::overlay) {
+    if (decal.instance == Instance::all) add("instance", "an overlay lies on one node only");
+    if (decal.uv_conflict != UvConflict::separate)
+      add("uv_conflict", "an overlay has texture coordinates of its own");
+  } else if (decal.offset) {
+    add("offset", "only an overlay has one");
+  }
+  if (decal.method == Method::applique) return warnings;
+  const std::string method = fmt::format("the method \"{}\" ", name_of(decal.method));
+  if (decal.energy != Energy::isometric)
+    add("energy", method + (decal.method == Method::paper ? "is conformal" : "has none to choose"));
+  if (!decal.guide) add("guide", method + "has none");
+  if (decal.overlap == Overlap::allow) add("overlap", method + "does not let the image go on over itself");
+  return warnings;
+}
+
 /// The decal as the engine takes it, once its region and its features are known.
 DecalInput input_of(const SolvedDecal& decal) {
   DecalInput input = {decal.job.name, decal.region, decal.features, std::nullopt};
@@ -149,15 +172,7 @@ Result<void> solve_geometry(const Model& model, SurfaceCache& surfaces, SolvedDe
   }
   decal.times.add("places", watch.lap());
 
-  if (decal.job.offset && decal.job.output != DecalOutput::overlay)
-    decal.warnings.push_back(
-        {"offset_ignored",
-         fmt::format("decal '{}': 'offset' is not used, because only an overlay has one", name)});
-
-  if (decal.job.instance == Instance::all && decal.job.output == DecalOutput::overlay)
-    decal.warnings.push_back(
-        {"instance_ignored",
-         fmt::format("decal '{}': 'instance' is not used, because an overlay lies on one node only", name)});
+  for (Warning& warning : unused_options(decal.job)) decal.warnings.push_back(std::move(warning));
 
   SolveOptions options = options_of(decal.job);
   if (traced) options.trace = &decal.trace;

@@ -138,6 +138,33 @@ TEST_F(BakeTest, PutsItThereByEveryRival) {
   }
 }
 
+/// What a method or an output has no use for is not passed over in silence.
+TEST_F(BakeTest, WarnsOfOptionsWithoutEffect) {
+  const auto codes_of = [&](const json& changes) {
+    json job = job_at(-2, 0);
+    job["decals"][0].update(changes);
+    folder_.write("job.json", job);
+    EXPECT_EQ(folder_.run("check job.json --report report.json").status, 0);
+    std::vector<std::string> codes;
+    const json report = valid_report();
+    for (const json& warning : report["decals"][0]["warnings"]) codes.push_back(warning["code"]);
+    return codes;
+  };
+  using Codes = std::vector<std::string>;
+  const json options = {{"energy", 0.5}, {"guide", false}, {"overlap", "allow"}};
+  EXPECT_EQ(codes_of(options), Codes());
+  for (const char* method : {"planar", "expmap", "stroke"}) {
+    json changes = options;
+    changes["method"] = method;
+    EXPECT_EQ(codes_of(changes), Codes({"energy_ignored", "guide_ignored", "overlap_ignored"})) << method;
+  }
+  EXPECT_EQ(codes_of({{"method", "planar"}}), Codes());
+  const json overlay = {
+      {"output", "overlay"}, {"uv_conflict", "share"}, {"instance", "all"}, {"offset", 0.01}};
+  EXPECT_EQ(codes_of(overlay), Codes({"instance_ignored", "uv_conflict_ignored"}));
+  EXPECT_EQ(codes_of({{"offset", 0.01}}), Codes({"offset_ignored"}));
+}
+
 TEST_F(BakeTest, LaysARivalOverTheModelAsWell) {
   json job = job_at(-2, 0);
   job["decals"][0].update({{"method", "expmap"}, {"output", "overlay"}});
