@@ -88,6 +88,12 @@ Result<void> check_input(const SurfaceMesh& surface, const DecalInput& input,
         prefix +
             "a single feature fixes neither size nor direction: give \"size\" (the image's width in scene "
             "units, over 0) and \"up\" (a direction), or pin a second feature");
+  if (input.features.size() == 1) {
+    // Near an edge the normal of the map's frame is another than the face's own.
+    const auto corners = surface.corners(input.features[0].surface.face);
+    const Vec3 normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]).normalized();
+    if (auto up = lone_up(input, normal); !up) return tl::unexpected<Error>(std::move(up.error()));
+  }
   std::vector<std::vector<std::string>> parts;
   std::vector<std::uint32_t> component;
   for (std::size_t k = 0; k < input.features.size(); ++k) {

@@ -462,6 +462,18 @@ TEST(DecalErrors, NameTheCulprit) {
   expect_error(surface, lone, ErrorCode::size_missing, "along the surface's normal");
 }
 
+TEST(DecalErrors, UpAlongAFlatFacesNormalIsTurnedDownBesideAnEdgeToo) {
+  // Two squares at a right angle: the mean normal round the feature is not its face's own.
+  const std::vector<Vec3> positions = {{0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}, {1, 0, 0}, {1, 1, 0}};
+  const SurfaceMesh surface = weld_surface(
+      positions, std::vector<std::array<std::uint32_t, 3>>{{0, 1, 2}, {0, 2, 3}, {1, 4, 5}, {1, 5, 2}});
+  for (const double x : {0.1, 0.9, 0.999}) {
+    DecalInput lone = decal(surface, rectangle(), {{{256, 256}, {x, 0.5, 1}}});
+    lone.lone = LoneFrame{0.5, {0, 0, 1}};
+    expect_error(surface, lone, ErrorCode::size_missing, "along the surface's normal");
+  }
+}
+
 TEST(DecalErrors, TurnDownAnImageFarLargerThanTheSurface) {
   const SurfaceMesh surface = shapes::plane(8, 8, 1, 1).weld();
   DecalInput lone = decal(surface, rectangle(), {{{256, 256}, {0.5, 0.5, 0}}});
