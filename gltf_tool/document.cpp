@@ -3,10 +3,12 @@
 #include <cerrno>
 #include <cstring>
 #include <fstream>
+#include <string_view>
 #include <system_error>
 
 #include <fmt/format.h>
 
+#include "json_error.h"
 #include "uri.h"
 
 namespace applique {
@@ -28,9 +30,10 @@ Result<Document::Json> parse_json(std::span<const std::uint8_t> text, const std:
       return fail(ErrorCode::model_invalid,
                   fmt::format("'{}': its JSON is not an object but {}", name, json.type_name()));
     return json;
-  } catch (const Document::Json::exception& error) {
+  } catch (const Document::Json::exception&) {
+    const std::string_view all(reinterpret_cast<const char*>(text.data()), text.size());
     return fail(ErrorCode::model_invalid,
-                fmt::format("'{}': its JSON cannot be parsed: {}", name, error.what()));
+                fmt::format("'{}': its JSON cannot be parsed: {}", name, explain_json_error(all)));
   }
 }
 

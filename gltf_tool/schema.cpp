@@ -13,6 +13,7 @@
 #include <valijson/validation_results.hpp>
 #include <valijson/validator.hpp>
 
+#include "json_error.h"
 #include "near_names.h"
 #include "schemas.h"
 
@@ -205,12 +206,8 @@ Result<json> parse_json(const std::string& text, const std::string& file) {
       return fail(ErrorCode::json_invalid,
                   fmt::format("{}: \"{}\" is given twice in one object", file, twice));
     return document;
-  } catch (const json::exception& error) {
-    // "[json.exception.parse_error.101] parse error at line 3, column 7: syntax error while …"
-    const std::string what = error.what();
-    const std::size_t start = what.find("parse error");
-    return fail(ErrorCode::json_invalid,
-                fmt::format("{}: {}", file, start == std::string::npos ? what : what.substr(start)));
+  } catch (const json::exception&) {
+    return fail(ErrorCode::json_invalid, fmt::format("{}: {}", file, explain_json_error(text)));
   }
 }
 

@@ -53,6 +53,8 @@ TEST(Glb, SaysWhatIsWrongWithTheContainer) {
   no_json[16] = 'X';
   EXPECT_NE(error_of(no_json).find("the first chunk is not JSON"), std::string::npos);
   EXPECT_NE(error_of(make_glb("[1]")).find("its JSON is not an object"), std::string::npos);
+  EXPECT_EQ(error_of(make_glb(R"({"asset":{"version";"2.0"}})")),
+            "'m.glb': its JSON cannot be parsed: line 1, column 20: found ';' where ':' is expected");
   EXPECT_NE(error_of({'P', 'K', 3, 4}).find("neither a GLB"), std::string::npos);
 }
 
