@@ -170,7 +170,7 @@ Result<std::array<int, 2>> slot_texture_size(const SolvedJob& job, std::optional
   const MaterialTexture texture = texture_of(job.model, material, slot);
   if (!texture.image) return size_of_new(job, material, slot);
   APPLIQUE_TRY(const auto bytes, read_image_bytes(job.model.document, *texture.image));
-  return image_size(bytes, fmt::format("'{}', image {}", job.model.document.name, *texture.image));
+  return image_size(bytes, fmt::format("{}, image {}", job.model.document.name, *texture.image));
 }
 
 Result<std::vector<BakeTarget>> plan_bake(const SolvedJob& job, Document& document) {

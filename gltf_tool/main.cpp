@@ -3,9 +3,12 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
+#include <string>
+#include <vector>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
 
@@ -15,6 +18,7 @@
 #include "commands/explain.h"
 #include "commands/inspect.h"
 #include "commands/render.h"
+#include "near_names.h"
 #include "output_file.h"
 #include "version.h"
 
@@ -31,6 +35,19 @@ constexpr const char* epilogue = R"(Examples:
 
 Exit codes: 0 done, 1 wrong usage, 2 input cannot be read or is invalid, 3 the job cannot be solved,
 4 output cannot be written, 5 no usable Vulkan device.)";
+
+/// What is wrong with the arguments; without a command, which ones there are.
+std::string explain(const CLI::App& app, const CLI::Error& error) {
+  if (!app.get_subcommands().empty() ||
+      error.get_exit_code() != static_cast<int>(CLI::ExitCodes::RequiredError))
+    return error.what();
+  std::vector<std::string> commands;
+  for (const CLI::App* command : app.get_subcommands({})) commands.push_back(command->get_name());
+  const std::vector<std::string> words = app.remaining();
+  return words.empty() ? fmt::format("a command is needed: {}", fmt::join(commands, ", "))
+                       : fmt::format("there is no command '{}', expected {}", words.front(),
+                                     applique::suggest_names(words.front(), commands));
+}
 
 void start_log(const applique::CommonArguments& common) {
   auto log = spdlog::stderr_color_mt("applique");
@@ -50,8 +67,8 @@ int main(int argc, char** argv) {
   app.footer(epilogue);
   app.set_version_flag("--version", std::string("applique ") + applique::version);
   app.require_subcommand(1);
-  app.failure_message([](const CLI::App*, const CLI::Error& error) {
-    return fmt::format("applique: error: {}\nRun with --help for the usage.\n", error.what());
+  app.failure_message([&app](const CLI::App*, const CLI::Error& error) {
+    return fmt::format("applique: error: {}\nRun with --help for the usage.\n", explain(app, error));
   });
 
   applique::CommonArguments common;

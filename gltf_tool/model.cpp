@@ -379,7 +379,7 @@ Result<Image> load_model_image(const Model& model, std::size_t image) {
 
 Result<Image> load_document_image(const Document& document, std::size_t image) {
   APPLIQUE_TRY(const auto bytes, read_image_bytes(document, image));
-  return decode_image(bytes, fmt::format("'{}', image {}", document.name, image));
+  return decode_image(bytes, fmt::format("{}, image {}", document.name, image));
 }
 
 namespace {
@@ -409,7 +409,7 @@ std::optional<std::array<int, 2>> container_size(std::span<const std::uint8_t> b
 Result<std::array<int, 2>> document_image_size(const Document& document, std::size_t image) {
   APPLIQUE_TRY(const auto bytes, read_image_bytes(document, image));
   if (const auto size = container_size(bytes)) return *size;
-  return image_size(bytes, fmt::format("'{}', image {}", document.name, image));
+  return image_size(bytes, fmt::format("{}, image {}", document.name, image));
 }
 
 ModelSurface build_surface(const Model& model, const std::vector<std::size_t>& nodes,

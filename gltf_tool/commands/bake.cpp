@@ -51,7 +51,7 @@ void add_texture_options(CLI::App& command, TextureEncoding& textures) {
   const auto* quality = command
                             .add_option("--texture-quality", textures.quality,
                                         "Of JPEG and WebP, 1 to 100 (default 90); 100 makes WebP lossless")
-                            ->check(CLI::Range(1, 100).description(""))
+                            ->check(whole_number_within(1, 100))
                             ->option_text("QUALITY");
   const auto* bits =
       command

@@ -15,6 +15,10 @@ namespace {
 
 constexpr int largest_side = 4096;  // pixels of a picture
 
+std::string extension_of(const std::string& path) {
+  return CLI::detail::to_lower(std::filesystem::path(path).extension().string());
+}
+
 }  // namespace
 
 CLI::App* add_subcommand(CLI::App& app, const std::string& name, const std::string& description,
@@ -108,7 +112,7 @@ const CLI::Validator picture_size(
 
 const CLI::Validator model_extension(
     [](std::string& path) {
-      const std::string extension = std::filesystem::path(path).extension().string();
+      const std::string extension = extension_of(path);
       if (extension == ".glb" || extension == ".gltf") return std::string();
       return fmt::format("{}: models are written as .glb or .gltf", path);
     },
@@ -116,7 +120,7 @@ const CLI::Validator model_extension(
 
 const CLI::Validator picture_extension(
     [](std::string& path) {
-      if (std::filesystem::path(path).extension() == ".png") return std::string();
+      if (extension_of(path) == ".png") return std::string();
       return fmt::format("{}: pictures are written as .png", path);
     },
     "");
@@ -127,6 +131,18 @@ CLI::Validator number_within(double least, double most) {
         double value = 0;
         if (CLI::detail::lexical_cast(text, value) && value >= least && value <= most) return std::string();
         return fmt::format("{}: expected a number from {} to {}", text, least, most);
+      },
+      "");
+}
+
+CLI::Validator whole_number_within(int least, std::optional<int> most) {
+  return CLI::Validator(
+      [least, most](std::string& text) {
+        int value = 0;
+        if (CLI::detail::lexical_cast(text, value) && value >= least && value <= most.value_or(value))
+          return std::string();
+        return fmt::format("{}: expected a whole number from {}{}", text, least,
+                           most ? fmt::format(" to {}", *most) : " on");
       },
       "");
 }

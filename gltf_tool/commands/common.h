@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 
 #include <CLI/CLI.hpp>
@@ -54,13 +55,16 @@ PictureSize parse_size(const std::string& text);
 /// For options that name the size of a picture: what parse_size understands, 1 to 4096 pixels a side.
 extern const CLI::Validator picture_size;
 
-/// For options that name a model to write: .glb or .gltf.
+/// For options that name a model to write: .glb or .gltf, in any case.
 extern const CLI::Validator model_extension;
 
-/// For options that name a picture to write: .png.
+/// For options that name a picture to write: .png, in any case.
 extern const CLI::Validator picture_extension;
 
 /// For options that are numbers: finite, `least` to `most`.
 CLI::Validator number_within(double least, double most);
+
+/// For options that are whole numbers: `least` to `most`; none: as large as an int can be.
+CLI::Validator whole_number_within(int least, std::optional<int> most = std::nullopt);
 
 }  // namespace applique

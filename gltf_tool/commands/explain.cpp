@@ -33,12 +33,14 @@ CLI::App* add_explain_command(CLI::App& app, ExplainArguments& arguments) {
   command->add_option("--stage", arguments.stage, "What to draw")
       ->required()
       ->check(CLI::IsMember(names_of_stages()));
-  command->add_option("-o,--output", arguments.output, "The picture to write (PNG)")->required();
+  command->add_option("-o,--output", arguments.output, "The picture to write (PNG)")
+      ->required()
+      ->check(picture_extension);
   command->add_option("--decal", arguments.decal, "The decal of this name instead of the first one");
   command
       ->add_option("--step", arguments.step,
                    "A step of the growth, from 0; for growth (else several) and warp (else the last)")
-      ->check(CLI::NonNegativeNumber);
+      ->check(whole_number_within(0));
   command->add_option("--size", arguments.size, "The picture's size, WIDTHxHEIGHT in pixels")
       ->capture_default_str()
       ->check(picture_size);

@@ -156,7 +156,10 @@ TEST_F(ExplainTest, TurnsDownWhatIsNotThere) {
   };
   EXPECT_EQ(run("--stage dreams").status, 1);
   EXPECT_EQ(run("").status, 1);
-  EXPECT_EQ(run("--stage growth --step -1").status, 1);
+  const CommandResult before = run("--stage growth --step -1");
+  EXPECT_EQ(before.status, 1);
+  EXPECT_NE(before.err.find("--step: -1: expected a whole number from 0"), std::string::npos) << before.err;
+  EXPECT_EQ(folder_.run("explain job.json --stage region -o picture.jpg").status, 1);
   EXPECT_EQ(run("--stage region --step 1").status, 1);
   EXPECT_EQ(run("--stage region --size 0x5").status, 1);
   const CommandResult late = run("--stage growth --step 1000");

@@ -143,12 +143,41 @@ TEST_F(TextureFormats, WrongCombinationsAreWrongUsage) {
        {"--texture-quality 80", "--texture-format png --texture-quality 80", "--texture-bits 12",
         "--texture-format jpeg --texture-bits 16", "--texture-format webp --texture-bits 16",
         "--texture-format ktx2", "--texture-format jpeg --texture-quality 0",
-        "--texture-format jpeg --texture-quality 101"}) {
+        "--texture-format jpeg --texture-quality 101", "--texture-format jpeg --texture-quality 90.5"}) {
     const CommandResult result = folder_.run(std::string("bake job.json -o out.glb ") + options);
     EXPECT_EQ(result.status, 1) << options << "\n" << result.err;
     EXPECT_NE(result.err.find("--texture-"), std::string::npos) << result.err;
   }
   EXPECT_FALSE(std::filesystem::exists(folder_ / "out.glb"));
+  EXPECT_NE(folder_.run("bake job.json -o out.glb --texture-format jpeg --texture-quality 90.5")
+                .err.find("--texture-quality: 90.5: expected a whole number from 1 to 100"),
+            std::string::npos);
+}
+
+TEST_F(TextureFormats, ExtensionsMayBeInCapitals) {
+  for (const char* name : {"out.GLB", "out.GLTF"}) {
+    const CommandResult result = bake(job_at(0, 0, 0), std::string("--preview view.PNG -o ") + name);
+    ASSERT_EQ(result.status, 0) << result.err;
+    EXPECT_EQ(output(name).document.is_glb, name == std::string("out.GLB"));
+    EXPECT_EQ(count_wrong(texture_of(output(name), "Sheet"), plain), 0);
+    EXPECT_TRUE(read_image(folder_ / "view.PNG")) << "the preview";
+  }
+}
+
+TEST_F(TextureFormats, CutOffTexturesAreNamedByCheckAndBake) {
+  edit_model([](Document& document) {
+    auto png = encode_png(make_noise(texture_size)).value();
+    png.resize(png.size() / 2);
+    set_slot_image(document, 0, MaterialSlot::base_color, png);
+  });
+  const CommandResult baked = bake(job_at(0, 0, 0)), checked = folder_.run("check job.json");
+  for (const CommandResult& result : {baked, checked}) {
+    EXPECT_EQ(result.status, 2);
+    EXPECT_NE(result.err.find("applique: error: image 'model.glb, image 0': the file is cut off"),
+              std::string::npos)
+        << result.err;
+  }
+  EXPECT_EQ(baked.err.find("libpng"), std::string::npos) << baked.err;
 }
 
 TEST_F(TextureFormats, SeparateFilesTakeNobodysPlace) {
@@ -231,7 +260,7 @@ TEST_F(TextureFormats, Ktx2IsNotReadAndTheErrorSaysWhatToDo) {
   });
   const CommandResult result = bake(job_at(0, 0, 0));
   EXPECT_EQ(result.status, 2);
-  EXPECT_NE(result.err.find("'model.glb', image 0"), std::string::npos) << result.err;
+  EXPECT_NE(result.err.find("image 'model.glb, image 0'"), std::string::npos) << result.err;
   EXPECT_NE(result.err.find("gltf-transform ktxdecompress"), std::string::npos) << result.err;
   // As another texture than the one that is baked into, it is no obstacle and stays.
   edit_model([](Document& document) {

@@ -47,10 +47,26 @@ std::string reader_of(std::span<const std::uint8_t> bytes, const std::string& na
   return extension.empty() ? "" : extension.substr(1);
 }
 
-/// The last line of OpenImageIO's message for `input`; it may be empty.
+/// Whether a PNG ends in the middle of a chunk. To be known before libpng finds it, which says so on the
+/// standard error.
+bool is_cut_off_png(std::span<const std::uint8_t> bytes) {
+  constexpr std::size_t signature = 8, frame = 12;  // A chunk's length, type and checksum.
+  std::size_t at = signature;
+  while (at < bytes.size()) {
+    if (bytes.size() - at < frame) return true;
+    std::size_t length = 0;
+    for (std::size_t i = 0; i < 4; ++i) length = length << 8 | bytes[at + i];
+    if (starts_with(bytes.subspan(at + 4), "IEND")) return false;
+    if (length > bytes.size() - at - frame) return true;
+    at += frame + length;
+  }
+  return false;
+}
+
+/// The first line of OpenImageIO's message for `input`: later ones say it again.
 std::string reason_of(const OIIO::ImageInput& input) {
   std::string reason = input.geterror();
-  std::replace(reason.begin(), reason.end(), '\n', ' ');
+  reason.resize(std::min(reason.find('\n'), reason.size()));
   while (!reason.empty() && (reason.back() == ' ' || reason.back() == '.')) reason.pop_back();
   return reason.empty() ? "the data is broken" : reason;
 }
@@ -267,6 +283,7 @@ Result<Image> decode(std::span<const std::uint8_t> bytes, const std::string& nam
   image.channels = channels;
   image.bits = wide ? 16 : 8;
   if (!pixels) return image;
+  if (reader == "png" && is_cut_off_png(bytes)) return invalid("the file is cut off; get a whole copy of it");
   const bool done = wide ? read_pixels<std::uint16_t>(*input, OIIO::TypeDesc::UINT16, image)
                          : read_pixels<std::uint8_t>(*input, OIIO::TypeDesc::UINT8, image);
   if (!done) return invalid(reason_of(*input));
