@@ -5,14 +5,13 @@
 #include <utility>
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include "attach_overlay.h"
 #include "bake_plan.h"
 #include "bake_seams.h"
 #include "decal_layers.h"
 #include "edit.h"
-#include "instances.h"
+#include "material_warnings.h"
 #include "overlay.h"
 #include "overlay_layers.h"
 #include "overlay_layout.h"
@@ -74,75 +73,6 @@ void warn_of_overlap(SolvedDecal& decal, const TargetWork& work, const TransferR
                    decal.job.uv_conflict == UvConflict::separate
                        ? ""
                        : "; \"uv_conflict\": \"separate\" gives it texture space of its own there")});
-}
-
-void warn_of_tint(SolvedDecal& decal, const SolvedJob& job, const TargetWork& work) {
-  const auto& factor = job.model.materials[*work.target.material].base_colour_factor;
-  if (factor[0] == 1 && factor[1] == 1 && factor[2] == 1) return;
-  decal.warnings.push_back(
-      {"base_color_factor_tints",
-       fmt::format(
-           "decal '{}': the material '{}' multiplies its texture, and so the decal, by the colour ({:.3g}, "
-           "{:.3g}, {:.3g})",
-           decal.job.name, work.report.material, factor[0], factor[1], factor[2])});
-}
-
-void warn_of_vertex_colours(SolvedDecal& decal, const Model& model) {
-  if (decal.job.output != DecalOutput::bake || !has_vertex_colours(decal, model)) return;
-  decal.warnings.push_back(
-      {"vertex_colors_tint",
-       fmt::format(
-           "decal '{}': the model's vertex colours (COLOR_0) multiply the texture under it, and so the "
-           "decal; make them white there, or the decal \"output\": \"overlay\"",
-           decal.job.name)});
-}
-
-/// Variants that show another material under the decal, and so the surface without it.
-void warn_of_variants(SolvedDecal& decal, const Model& model) {
-  if (decal.job.output != DecalOutput::bake) return;
-  const std::vector<std::string> names = variants_without(decal, model);
-  if (names.empty()) return;
-  decal.warnings.push_back(
-      {"variants_without_decal",
-       fmt::format(
-           "decal '{}': the material variants {} show other materials under it, without the decal; an "
-           "\"output\": \"overlay\" is seen in all",
-           decal.job.name, fmt::join(names, ", "))});
-}
-
-/// Factors of a texture that was there before: they stay, and so change what the decal brings.
-void warn_of_factors(SolvedDecal& decal, const SolvedJob& job, const TargetWork& work) {
-  if (work.report.created) return;
-  if (work.target.slot == MaterialSlot::base_color) return warn_of_tint(decal, job, work);
-  const auto& material = job.model.document.json.at("materials").at(*work.target.material);
-  const auto warn = [&](const char* what, std::initializer_list<const char*> path) {
-    const auto* factor = find(material, path);
-    if (factor == nullptr || *factor == 1 || *factor == std::vector<double>{1, 1, 1}) return;
-    decal.warnings.push_back(
-        {"factor_scales",
-         fmt::format("decal '{}': the material '{}' multiplies its {}, and so the decal's, by {}",
-                     decal.job.name, work.report.material, what, factor->dump())});
-  };
-  switch (work.target.slot) {
-    case MaterialSlot::metallic_roughness:
-      warn("roughness", {"pbrMetallicRoughness", "roughnessFactor"});
-      warn("metallic", {"pbrMetallicRoughness", "metallicFactor"});
-      break;
-    case MaterialSlot::normal:
-      warn("relief", {"normalTexture", "scale"});
-      break;
-    case MaterialSlot::occlusion:
-      warn("occlusion", {"occlusionTexture", "strength"});
-      break;
-    default:
-      // Without a factor, nothing of the texture is seen.
-      if (find(material, {"emissiveFactor"}) == nullptr)
-        decal.warnings.push_back(
-            {"factor_scales", fmt::format("decal '{}': the material '{}' multiplies its emissive texture, "
-                                          "and so the decal's, by 0, its emissiveFactor",
-                                          decal.job.name, work.report.material)});
-      warn("emissive texture", {"emissiveFactor"});
-  }
 }
 
 void warn_of_density(SolvedDecal& decal, const std::optional<TexelDensity>& density) {
@@ -232,21 +162,19 @@ Result<void> transfer_all(SolvedJob& job, std::vector<TargetWork>& works, GpuBak
       work.report.gutter_texels += result.gutter_texels;
       work.report.shared_texels += result.shared_texels;
       if (layer == 0) warn_of_overlap(decal, work, result);
-      const bool again = i > 0 && work.target.shares[i - 1].decal == d;  // another layer of the texture
-      if (!again) warn_of_factors(decal, job, work);
     }
   }
-  for (std::size_t d = 0; d < layers.size(); ++d)
-    job.decals[d].warnings.insert(job.decals[d].warnings.end(), layers[d].warnings().begin(),
-                                  layers[d].warnings().end());
+  for (std::size_t d = 0; d < layers.size(); ++d) {
+    if (job.decals[d].job.output != DecalOutput::bake) continue;
+    APPLIQUE_TRY(const auto warnings, layers[d].warnings());
+    job.decals[d].warnings.insert(job.decals[d].warnings.end(), warnings.begin(), warnings.end());
+  }
   const Stopwatch watch;
   for (const SlotSeams& slot : seams) join_slot(slot);
   baked.times.add("seams", watch.seconds());
   for (std::size_t d = 0; d < job.decals.size(); ++d) {
     baked.densities.push_back(texel_density(job.decals[d], transfers[d]));
     warn_of_density(job.decals[d], baked.densities[d]);
-    warn_of_vertex_colours(job.decals[d], job.model);
-    warn_of_variants(job.decals[d], job.model);
   }
   return {};
 }
@@ -346,6 +274,7 @@ Result<BakedJob> bake_job(SolvedJob& job, GpuBaker& baker, const StageCallback& 
     if (on_stage) on_stage(stage, done);
   };
   show("preparing the textures", 0);
+  warn_of_materials(job);  // as they are in the file
   APPLIQUE_TRY(SeparatedUvs separated, separate_uvs(job, encoding));
   baked.uv_conflicts = std::move(separated.conflicts);
   baked.warnings = std::move(separated.warnings);

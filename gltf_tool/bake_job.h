@@ -36,10 +36,10 @@ struct BakedJob {  // NOLINT(bugprone-exception-escape): so is Document
 
 /// Puts the decals on the model: bakes the layers of each into the textures under it, or adds it as an
 /// overlay. Triangles that are to get texture space of their own get it first: `job` then has the model with
-/// them. Adds warnings to the decals: uv_overlap, base_color_factor_tints, factor_scales, vertex_colors_tint,
-/// variants_without_decal, low_texel_density, overlay_static, overlay_follows_nearly, and those of
-/// DecalLayers and make_overlay_layers; and texture_is_png to the job. Errors: uvs_missing, uvs_shared,
-/// device_failed, and those of load_model_image, DecalLayers and encode_texture.
+/// them. Adds warnings to the decals: uv_overlap, low_texel_density, overlay_static, overlay_follows_nearly,
+/// and those of warn_of_materials, DecalLayers and make_overlay_layers; and texture_is_png to the job.
+/// Errors: uvs_missing, uvs_shared, device_failed, and those of load_model_image, DecalLayers and
+/// encode_texture.
 Result<BakedJob> bake_job(SolvedJob& job, GpuBaker& baker, const StageCallback& on_stage = {},
                           const TextureEncoding& encoding = {});
 

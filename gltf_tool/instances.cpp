@@ -101,6 +101,14 @@ std::uint32_t part_that_stands_for(const Model& model, const DecalJob& decal, st
   return static_cast<std::uint32_t>(first - model.parts.begin());
 }
 
+std::set<std::optional<std::size_t>> materials_under(const SolvedDecal& decal, const Model& model) {
+  std::set<std::optional<std::size_t>> materials;
+  for_textured_sources(decal, [&](const ModelSurface::Source& source) {
+    materials.insert(model.parts[source.part].material);
+  });
+  return materials;
+}
+
 std::vector<std::string> variants_without(const SolvedDecal& decal, const Model& model) {
   std::set<Primitive> primitives;
   for_textured_sources(decal, [&](const ModelSurface::Source& source) {

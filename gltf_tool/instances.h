@@ -32,6 +32,9 @@ std::optional<std::uint32_t> part_that_shows(const Model& model, const DecalJob&
 /// first part of the same primitive; else the part itself.
 std::uint32_t part_that_stands_for(const Model& model, const DecalJob& decal, std::uint32_t part);
 
+/// The materials of the surface under a decal; none: that without one.
+std::set<std::optional<std::size_t>> materials_under(const SolvedDecal& decal, const Model& model);
+
 /// The names, quoted, of the material variants (KHR_materials_variants) in which the surface under a decal
 /// shows another material than by default.
 std::vector<std::string> variants_without(const SolvedDecal& decal, const Model& model);

@@ -252,6 +252,14 @@ std::vector<std::filesystem::path> images_of(const DecalJob& decal) {
   return images;
 }
 
+std::string label_of(const DecalJob& decal, const DecalLayer& layer) {
+  return fmt::format("decal '{}': layer \"{}\"", decal.name, layer.name);
+}
+
+std::string mask_label_of(const DecalJob& decal) {
+  return fmt::format("decal '{}': mask", decal.name);
+}
+
 Result<Job> load_job(const std::filesystem::path& path) {
   APPLIQUE_TRY(const auto bytes, read_file(path));
   const std::string file = path.filename().string();

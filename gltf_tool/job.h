@@ -94,6 +94,10 @@ const char* name_of(BlendMode mode);
 /// All the images that a decal names.
 std::vector<std::filesystem::path> images_of(const DecalJob& decal);
 
+/// How messages call a decal's layer and its mask: "decal 'crest': layer \"normal\"", "decal 'crest': mask".
+std::string label_of(const DecalJob& decal, const DecalLayer& layer);
+std::string mask_label_of(const DecalJob& decal);
+
 /// A job file, version 1.
 struct Job {
   std::filesystem::path path;   ///< The job file itself.

@@ -15,6 +15,7 @@
 
 #include "compositing.h"
 #include "decal_layers.h"
+#include "instances.h"
 
 namespace applique {
 namespace {
@@ -26,16 +27,6 @@ struct Ground {
   Values values = {};
   bool known = true;  ///< It is one value all over; else `values` are the plain material's.
 };
-
-std::set<std::optional<std::size_t>> materials_under(const Model& model, const SolvedDecal& decal) {
-  std::set<std::optional<std::size_t>> materials;
-  for (const PatchFaceId f : ids<PatchFaceId>(decal.map.patch.faces.size())) {
-    const FaceId face = decal.map.patch.faces[f].mesh_face;
-    if (decal.map.textured[f] != 0 && face.valid())
-      materials.insert(model.parts[decal.surface->source(face).part].material);
-  }
-  return materials;
-}
 
 Values plain_values(MaterialSlot slot) {
   switch (slot) {
@@ -53,7 +44,7 @@ Values plain_values(MaterialSlot slot) {
 Ground find_ground(const Model& model, const SolvedDecal& decal, MaterialSlot slot) {
   const auto none = Document::Json::object();
   std::set<Values> values;
-  for (const auto& index : materials_under(model, decal)) {
+  for (const auto& index : materials_under(decal, model)) {
     const auto& material = index ? model.document.json.at("materials").at(*index) : none;
     if (find_texture_info(material, slot) != nullptr) return {plain_values(slot), false};
     const auto factors = read_factors(material, slot);
@@ -256,7 +247,8 @@ Result<OverlayLayers> make_overlay_layers(const Model& model, SolvedDecal& decal
   Slots slots(model, decal, layers);
   for (const MaterialSlot slot : all_slots)
     if (slot != MaterialSlot::base_color) APPLIQUE_CHECK(slots.add(slot, out));
-  decal.warnings.insert(decal.warnings.end(), layers.warnings().begin(), layers.warnings().end());
+  APPLIQUE_TRY(const auto warnings, layers.warnings());
+  decal.warnings.insert(decal.warnings.end(), warnings.begin(), warnings.end());
   return out;
 }
 

@@ -646,6 +646,10 @@ Result<SeparatedUvs> separate_uvs(SolvedJob& job, const TextureEncoding& encodin
     for (const UvFinding& finding : findings) {
       if (finding.outcome == UvConflict::error) return tl::unexpected<Error>(error_of(job, group, finding));
       conflicts[finding.decal].push_back(report_of(job, group, finding));
+      // What is shared the transfer counts; that detail is lost shows nowhere else.
+      if (finding.outcome == UvConflict::share && finding.trouble == UvTrouble::coarse)
+        job.decals[finding.decal].warnings.push_back(
+            {"uv_conflict", conflicts[finding.decal].back().message});
     }
   SeparatedUvs separated;
   std::optional<Separation> separation;

@@ -38,7 +38,8 @@ struct SeparatedUvs {
 /// Tangent frames that the new coordinates would turn are turned in normal maps; where the material has an
 /// anisotropy (KHR_materials_anisotropy), the old ones are written instead.
 ///
-/// Adds warnings to the decals: uv_slot_not_resampled, uv_atlas_coarser, anisotropy_turns. Errors:
+/// Adds warnings to the decals: uv_conflict for one that shares coordinates too coarse for it,
+/// uv_slot_not_resampled, uv_atlas_coarser, anisotropy_turns. Errors:
 /// uvs_missing, uvs_shared; those of load_model_image, encode_texture and lay_out_uvs.
 Result<SeparatedUvs> separate_uvs(SolvedJob& job, const TextureEncoding& encoding = {});
 

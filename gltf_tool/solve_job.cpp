@@ -73,6 +73,18 @@ Result<T> of_decal(const DecalJob& decal, Result<T> result) {
   return fail(result.error().code, fmt::format("decal '{}': {}", decal.name, result.error().message));
 }
 
+/// The layers' images and the mask are read only once they are baked, but that they are there is to be known
+/// before the work.
+Result<void> check_layer_files(const DecalJob& decal) {
+  const auto check = [](const std::filesystem::path& path, const std::string& label) -> Result<void> {
+    if (path.empty() || std::filesystem::exists(path)) return {};
+    return fail(ErrorCode::file_unreadable,
+                fmt::format("{}: image '{}' does not exist", label, path.string()));
+  };
+  for (const DecalLayer& layer : decal.layers) APPLIQUE_CHECK(check(layer.image, label_of(decal, layer)));
+  return check(decal.mask, mask_label_of(decal));
+}
+
 Result<std::vector<Pixel>> find_contour(const RegionChoice& choice, const Image& image) {
   constexpr double default_threshold = 0.5;
   if (const auto* contour = std::get_if<ContourRegion>(&choice)) return contour->contour;
@@ -108,6 +120,17 @@ Result<void> check_lone_frame(const DecalJob& decal, std::vector<Warning>& warni
           : decal.up ? "'size' (the image's width in scene units)"
                      : "'size' (the image's width in scene units) and 'up' (the direction of its upper "
                        "edge)"));
+}
+
+/// A width that is a matter of the wrong unit rather than of taste.
+void warn_of_size(const DecalJob& decal, const Model& model, std::vector<Warning>& warnings) {
+  constexpr double least = 1e-5;
+  if (decal.features.size() > 1 || !decal.size || *decal.size >= least * model.diagonal()) return;
+  warnings.push_back(
+      {"size_tiny",
+       fmt::format("decal '{}': its \"size\" of {:.3g} is next to nothing on a model of {:.3g} across; it is "
+                   "the image's width in scene units",
+                   decal.name, *decal.size, model.diagonal())});
 }
 
 /// What a job asks of a decal, other than by default, that its output or its method has no use for.
@@ -162,6 +185,7 @@ Result<void> solve_geometry(const Model& model, SurfaceCache& surfaces, SolvedDe
   decal.times.add("surface", watch.lap());
 
   APPLIQUE_CHECK(check_lone_frame(decal.job, decal.warnings));
+  warn_of_size(decal.job, model, decal.warnings);
   for (std::size_t i = 0; i < decal.job.features.size(); ++i) {
     const JobFeature& feature = decal.job.features[i];
     const std::string label =
@@ -239,9 +263,7 @@ Result<SolvedJob> solve_job(const Job& job, const StageCallback& on_stage, bool 
     decal.times.add("load_image", loaded.seconds);
     solved.times.add("load_images", watch.lap());  // what was waited for
     APPLIQUE_TRY(decal.image, of_decal(decal_job, std::move(loaded.image)));
-    // Read only once they are baked, but that they are there is to be known before the work.
-    for (const std::filesystem::path& path : images_of(decal_job))
-      if (!std::filesystem::exists(path)) APPLIQUE_CHECK(of_decal(decal_job, read_image(path)));
+    APPLIQUE_CHECK(check_layer_files(decal_job));
     APPLIQUE_CHECK(solve_geometry(solved.model, surfaces, decal, traced));
     decal.warnings.insert(decal.warnings.end(), decal.map.warnings.begin(), decal.map.warnings.end());
     solved.decals.push_back(std::move(decal));

@@ -74,8 +74,9 @@ std::vector<Warning> quality_warnings(const std::string& name, const DecalMap& m
         fmt::format("parts of the region land on the surface more than once ({:.2f} % in all): the "
                     "{}",
                     percent,
-                    is_rival(options.method)
-                        ? "map folds; make it smaller, or leave out \"method\""
+                    is_rival(options.method) ? "map folds; make it smaller, or leave out \"method\""
+                    : map.quality.feature_residual.size() == 1
+                        ? "surface folds under it; check \"size\""
                         : "features pull the image over itself; check that none are swapped"));
   if (map.quality.l2_stretch > high_stretch)
     add("high_stretch",

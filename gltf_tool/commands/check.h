@@ -21,8 +21,9 @@ struct CheckArguments {
 
 CLI::App* add_check_command(CLI::App& app, CheckArguments& arguments);
 
-/// Solves the geometry of a job and tells how good it is, and where texture coordinates are in a decal's way;
-/// needs no Vulkan and changes no model. What a bake would refuse is an error, once the report is written.
+/// Solves the geometry of a job and tells how good it is, and where texture coordinates, materials and images
+/// are in a decal's way; needs no Vulkan and changes no model. What a bake would refuse is an error, once the
+/// report is written.
 Result<void> run_check(const CheckArguments& arguments, const CommonArguments& common);
 
 }  // namespace applique

@@ -193,6 +193,47 @@ TEST_F(LayersTest, NewTexturesHaveTheResolutionThatTheJobNames) {
   EXPECT_EQ(image_of(*model, MaterialSlot::base_color).width, texture_size);
 }
 
+TEST_F(LayersTest, WhatIsNotSeenIsWarnedOf) {
+  write_model();
+  Image clear = make_image(image_size, image_size, {65535, 0, 0, 0});
+  write_png(folder_ / "clear.png", clear);
+  for (int x = 0; x < 4; ++x) clear.pixel(x, 0)[3] = 65535;
+  write_png(folder_ / "corner.png", clear);
+  write_png(folder_ / "black.png", make_image(8, 8, {0, 0, 0, 65535}));
+  const auto expect_warning = [&](const json& changes, const std::vector<std::string>& parts) {
+    for (const char* output : {"bake", "overlay"}) {
+      SCOPED_TRACE(testing::Message() << changes << ", " << output);
+      json unseen = job(json::object());
+      unseen["decals"][0].update(changes);
+      unseen["decals"][0]["output"] = output;
+      folder_.write("job.json", unseen);
+      for (const char* command : {"check job.json", "bake job.json -o out.glb"}) {
+        const CommandResult result = folder_.run(std::string(command) + " --report report.json");
+        ASSERT_EQ(result.status, 0) << result.err;
+        std::size_t told = 0;
+        for (const json& warning : warnings()) {
+          if (warning["code"] != "invisible") continue;
+          ++told;
+          for (const std::string& part : parts)
+            EXPECT_NE(warning["message"].get<std::string>().find(part), std::string::npos) << warning;
+        }
+        EXPECT_EQ(told, parts.empty() ? 0u : 1u) << command << warnings();
+      }
+    }
+  };
+  const json middle = {{"contour", {{8, 8}, {56, 8}, {56, 56}, {8, 56}}}};
+  expect_warning({{"opacity", 0}}, {"decal 'crest': nothing of it is seen", "\"opacity\" is 0"});
+  expect_warning({{"image", "clear.png"}, {"region", {{"rectangle", true}}}}, {"'clear.png' is transparent"});
+  expect_warning({{"image", "corner.png"}, {"region", middle}}, {"'corner.png' is transparent"});
+  expect_warning({{"image", "corner.png"}, {"region", {{"rectangle", true}}}}, {});
+  expect_warning({{"image", "clear.png"}, {"region", middle}, {"mask", "image.png"}}, {});
+  expect_warning({{"mask", "black.png"}}, {"mask 'black.png' is black"});
+  expect_warning({{"layers", {{"roughness", {{"value", 0}, {"opacity", 0}}}}}},
+                 {"decal 'crest': layer \"roughness\": nothing of it is seen", "\"opacity\" is 0"});
+  expect_warning({{"layers", {{"roughness", "clear.png"}}}},
+                 {"layer \"roughness\"", "'clear.png' is transparent all over"});
+}
+
 TEST_F(LayersTest, WrongLayersAreNamed) {
   write_model();
   const auto message = [&](const json& layers) {

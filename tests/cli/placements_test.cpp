@@ -272,6 +272,21 @@ class Tints : public Placements {
                                           {"type", "VEC4"}});
   }
 
+  void write_factor(const std::array<double, 4>& factor) {
+    edit_model([&](Document& document) {
+      document.json["materials"][0]["pbrMetallicRoughness"]["baseColorFactor"] = factor;
+    });
+  }
+
+  /// The codes of what a check warns of, and a bake.
+  void expect_warnings(const json& job, const std::vector<std::string>& codes) {
+    folder_.write("job.json", job);
+    ASSERT_EQ(folder_.run("check job.json --report report.json").status, 0);
+    EXPECT_EQ(warnings(), codes) << "check";
+    ASSERT_EQ(bake(job).status, 0);
+    EXPECT_EQ(warnings(), codes) << "bake";
+  }
+
   std::vector<std::string> warnings() {
     std::vector<std::string> codes;
     const json all = report();
@@ -297,11 +312,61 @@ TEST_F(Tints, WhiteVertexColoursAreNoMatter) {
 }
 
 TEST_F(Tints, FactorsAreWarnedOf) {
+  write_factor({1, 0.5, 0.5, 1});
+  expect_warnings(job_at(0, 0, 0), {"base_color_factor_tints"});
+}
+
+TEST_F(Tints, TransparentMaterialsAreWarnedOf) {
+  const auto write_mode = [&](const char* mode, double alpha, double cutoff) {
+    write_factor({1, 1, 1, alpha});
+    edit_model([&](Document& document) {
+      document.json["materials"][0].update({{"alphaMode", mode}, {"alphaCutoff", cutoff}});
+    });
+  };
+  write_mode("OPAQUE", 0.4, 0.5);
+  expect_warnings(job_at(0, 0, 0), {});
+  write_mode("BLEND", 0.4, 0.5);
+  expect_warnings(job_at(0, 0, 0), {"base_color_factor_fades"});
+  write_mode("MASK", 0.4, 0.5);
+  expect_warnings(job_at(0, 0, 0), {"base_color_factor_fades"});
+  write_mode("MASK", 0.4, 0.3);
+  expect_warnings(job_at(0, 0, 0), {});
+  // Without a texture the factor goes into the one that is made, and the decal over it.
+  write_mode("BLEND", 0.4, 0.5);
   edit_model([](Document& document) {
-    document.json["materials"][0]["pbrMetallicRoughness"]["baseColorFactor"] = {1, 0.5, 0.5, 1};
+    document.json["materials"][0]["pbrMetallicRoughness"].erase("baseColorTexture");
   });
-  ASSERT_EQ(bake(job_at(0, 0, 0)).status, 0);
-  EXPECT_EQ(warnings(), std::vector<std::string>{"base_color_factor_tints"});
+  expect_warnings(job_at(0, 0, 0), {});
+  const Image texture = texture_of(output(), "Sheet");
+  EXPECT_EQ(texture.pixel(texture.width * 2 / 5, texture.height * 2 / 5)[3], 65535) << "opaque";
+}
+
+TEST_F(Tints, LayersThatAnUnlitMaterialHasNoUseForAreWarnedOf) {
+  edit_model([](Document& document) {
+    document.json["materials"][0]["extensions"]["KHR_materials_unlit"] = Json::object();
+    declare_extension(document, "KHR_materials_unlit");
+  });
+  expect_warnings(job_at(0, 0, 0), {});
+  json job = job_at(0, 0, 0);
+  job["decals"][0]["layers"] = {{"roughness", 0.5}};
+  expect_warnings(job, {"unlit_layers"});
+  job["decals"][0]["output"] = "overlay";
+  expect_warnings(job, {});
+}
+
+TEST_F(Tints, AColourThatSomeViewersTakeElsewhereIsWarnedOf) {
+  edit_model([](Document& document) {
+    document.json["materials"][0]["extensions"]["KHR_materials_pbrSpecularGlossiness"]["diffuseTexture"] =
+        texture_info(document);
+    declare_extension(document, "KHR_materials_pbrSpecularGlossiness");
+  });
+  expect_warnings(job_at(0, 0, 0), {"specular_glossiness"});
+  json job = job_at(0, 0, 0);
+  job["decals"][0]["layers"] = {{"baseColor", false}, {"emissive", {0, 1, 0}}};
+  expect_warnings(job, {});
+  job = job_at(0, 0, 0);
+  job["decals"][0]["output"] = "overlay";
+  expect_warnings(job, {});
 }
 
 }  // namespace

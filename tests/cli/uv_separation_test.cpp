@@ -124,6 +124,21 @@ TEST_F(UvSeparationTest, CheckTellsOfSharedTexels) {
   expect_said({"error", "'crest'", "\"separate\"", "\"share\"", "\"overlay\""});
 }
 
+TEST_F(UvSeparationTest, DetailThatIsLostBySharingIsWarnedOf) {
+  SmallMesh wall = make_plane("Wall", 8);
+  for (auto& uv : wall.uvs) uv = {0.01 * uv[0], 0.01 * uv[1]};
+  write_model({wall});
+  json job = job_at(0, 0);
+  job["decals"][0]["uv_conflict"] = "share";
+  for (const json& report : {check(job), bake(job)}) {
+    const json& warnings = report["decals"][0]["warnings"];
+    ASSERT_FALSE(warnings.empty());
+    EXPECT_EQ(warnings[0]["code"], "uv_conflict");
+    EXPECT_NE(warnings[0]["message"].get<std::string>().find("its detail is lost there"), std::string::npos)
+        << warnings;
+  }
+}
+
 TEST_F(UvSeparationTest, CheckTellsOfMissingCoordinates) {
   SmallMesh wall = make_plane("Wall", 8);
   wall.uvs.clear();
