@@ -244,12 +244,15 @@ const char* name_of(BlendMode mode) {
   return blend_names[static_cast<std::size_t>(mode)];
 }
 
-std::vector<std::filesystem::path> images_of(const DecalJob& decal) {
-  std::vector<std::filesystem::path> images = {decal.image};
-  if (!decal.mask.empty()) images.push_back(decal.mask);
-  for (const DecalLayer& layer : decal.layers)
-    if (!layer.image.empty()) images.push_back(layer.image);
-  return images;
+std::vector<std::filesystem::path> inputs_of(const Job& job) {
+  std::vector<std::filesystem::path> inputs = {job.path, job.model};
+  for (const DecalJob& decal : job.decals) {
+    inputs.push_back(decal.image);
+    if (!decal.mask.empty()) inputs.push_back(decal.mask);
+    for (const DecalLayer& layer : decal.layers)
+      if (!layer.image.empty()) inputs.push_back(layer.image);
+  }
+  return inputs;
 }
 
 std::string label_of(const DecalJob& decal, const DecalLayer& layer) {

@@ -91,9 +91,6 @@ struct DecalJob {
 /// As jobs call it: "color-burn".
 const char* name_of(BlendMode mode);
 
-/// All the images that a decal names.
-std::vector<std::filesystem::path> images_of(const DecalJob& decal);
-
 /// How messages call a decal's layer and its mask: "decal 'crest': layer \"normal\"", "decal 'crest': mask".
 std::string label_of(const DecalJob& decal, const DecalLayer& layer);
 std::string mask_label_of(const DecalJob& decal);
@@ -108,6 +105,9 @@ struct Job {
       resolution;  ///< Texels a side of other textures that it creates; none: the base colour's.
   std::vector<DecalJob> decals;  ///< At least one; later ones lie over earlier ones.
 };
+
+/// The files that a job reads: itself, its model (not those that the model names) and its decals' images.
+std::vector<std::filesystem::path> inputs_of(const Job& job);
 
 /// Reads and validates a job file. Errors: file_unreadable, json_invalid (line and column), schema_violation
 /// (JSON pointer, what was found, what was expected; also two decals with one name, options of a method that

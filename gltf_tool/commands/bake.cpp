@@ -92,13 +92,6 @@ CLI::App* add_bake_command(CLI::App& app, BakeArguments& arguments) {
 
 namespace {
 
-std::vector<std::filesystem::path> inputs_of(const Job& job) {
-  std::vector<std::filesystem::path> inputs = {job.path, job.model};
-  for (const DecalJob& decal : job.decals)
-    for (std::filesystem::path& image : images_of(decal)) inputs.push_back(std::move(image));
-  return inputs;
-}
-
 std::vector<std::filesystem::path> outputs_of(const BakeArguments& arguments) {
   std::vector<std::filesystem::path> outputs = {arguments.output};
   for (const auto& output : {arguments.report, arguments.preview})

@@ -103,12 +103,10 @@ Result<void> run_check(const CheckArguments& arguments, const CommonArguments& c
   if (arguments.dump_region) APPLIQUE_CHECK(check_writable(*arguments.dump_region));
 
   APPLIQUE_TRY(const Job job, load_job(arguments.job));
-  std::vector<std::filesystem::path> outputs, inputs = {job.path, job.model};
-  for (const DecalJob& decal : job.decals)
-    for (std::filesystem::path& image : images_of(decal)) inputs.push_back(std::move(image));
+  std::vector<std::filesystem::path> outputs;
   for (const auto& output : {arguments.report, arguments.dump_region})
     if (output) outputs.push_back(*output);
-  APPLIQUE_CHECK(check_distinct(outputs, inputs));
+  APPLIQUE_CHECK(check_distinct(outputs, inputs_of(job)));
   SolvedJob solved;
   {
     Progress progress(!common.quiet);

@@ -81,12 +81,11 @@ StageCallback show_stages(Progress& progress, double start, double share) {
   };
 }
 
-Result<Job> load_job_of_decal(const std::filesystem::path& path, const std::string& decal) {
-  APPLIQUE_TRY(Job job, load_job(path));
+Result<Job> only_decal(Job job, const std::string& decal) {
   if (!decal.empty()) {
     std::erase_if(job.decals, [&](const DecalJob& other) { return other.name != decal; });
     if (job.decals.empty())
-      return fail(ErrorCode::json_invalid, fmt::format("{}: has no decal '{}'", path.string(), decal));
+      return fail(ErrorCode::json_invalid, fmt::format("{}: has no decal '{}'", job.path.string(), decal));
   }
   job.decals.resize(1);
   return job;

@@ -45,9 +45,9 @@ void log_suggestions(const SolvedJob& job);
 /// takes `share`, both 0..1; and logs them.
 StageCallback show_stages(class Progress& progress, double start, double share);
 
-/// The job with one decal alone: the one of this name, or the first if the name is empty. Errors: those of
-/// load_job; json_invalid when it has no such decal.
-Result<Job> load_job_of_decal(const std::filesystem::path& path, const std::string& decal);
+/// The job with one decal alone: the one of this name, or the first if the name is empty. Errors:
+/// json_invalid when it has no such decal.
+Result<Job> only_decal(Job job, const std::string& decal);
 
 /// "1200x900" as a size; a side of 0 if it is nothing of the kind.
 PictureSize parse_size(const std::string& text);

@@ -58,8 +58,9 @@ Result<void> run_explain(const ExplainArguments& arguments, const CommonArgument
     options.step = static_cast<std::size_t>(arguments.step);
   }
   APPLIQUE_CHECK(check_writable(arguments.output));
-  APPLIQUE_TRY(const Job job, load_job_of_decal(arguments.job, arguments.decal));
-  APPLIQUE_CHECK(check_distinct({arguments.output}, {job.path, job.model, job.decals.front().image}));
+  APPLIQUE_TRY(Job all, load_job(arguments.job));
+  APPLIQUE_CHECK(check_distinct({arguments.output}, inputs_of(all)));
+  APPLIQUE_TRY(const Job job, only_decal(std::move(all), arguments.decal));
   Progress progress(!common.quiet);
   constexpr double solve_share = 0.6;
   APPLIQUE_TRY(const SolvedJob solved, solve_job(job, show_stages(progress, 0, solve_share), true));

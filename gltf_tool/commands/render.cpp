@@ -8,11 +8,11 @@
 namespace applique {
 namespace {
 
-Result<Camera> find_camera(const RenderArguments& arguments, const Model& model, PictureSize size) {
-  if (!arguments.job)
-    return camera_around_model(model, arguments.azimuth, arguments.elevation, arguments.zoom, size);
-  APPLIQUE_TRY(const Job job, load_job_of_decal(*arguments.job, arguments.decal));
-  APPLIQUE_TRY(const SolvedJob solved, solve_job(job));
+Result<Camera> find_camera(const RenderArguments& arguments, const std::optional<Job>& job,
+                           const Model& model, PictureSize size) {
+  if (!job) return camera_around_model(model, arguments.azimuth, arguments.elevation, arguments.zoom, size);
+  APPLIQUE_TRY(const Job lone, only_decal(*job, arguments.decal));
+  APPLIQUE_TRY(const SolvedJob solved, solve_job(lone));
   return camera_on_decal(solved.decals.front(), size);
 }
 
@@ -67,13 +67,18 @@ Result<void> run_render(const RenderArguments& arguments, const CommonArguments&
   if (arguments.camera) APPLIQUE_CHECK(check_writable(*arguments.camera));
   std::vector<std::filesystem::path> outputs = {arguments.output};
   if (arguments.camera) outputs.push_back(*arguments.camera);
-  APPLIQUE_CHECK(check_distinct(outputs, {arguments.model, arguments.job.value_or(arguments.model)}));
+  APPLIQUE_CHECK(check_distinct(outputs, {arguments.model}));
+  std::optional<Job> job;
+  if (arguments.job) {
+    APPLIQUE_TRY(job, load_job(*arguments.job));
+    APPLIQUE_CHECK(check_distinct(outputs, inputs_of(*job)));
+  }
   const PictureSize size = parse_size(arguments.size);
   Progress progress(!common.quiet);
   progress.show("loading the model", 0);
   APPLIQUE_TRY(const Model model, load_model(arguments.model));
   APPLIQUE_CHECK(check_distinct(outputs, files_of(model.document)));
-  APPLIQUE_TRY(const Camera camera, find_camera(arguments, model, size));
+  APPLIQUE_TRY(const Camera camera, find_camera(arguments, job, model, size));
   progress.show("rendering", 0.5);
   DeviceRequest request;
   request.selector = arguments.device;

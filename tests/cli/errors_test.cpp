@@ -1,10 +1,14 @@
 // What stops a job: each error is read as a person would read it, with its exit code.
 
+#include <fstream>
+
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
 #include "cli/command.h"
 #include "cli/small_model.h"
+#include "document.h"
+#include "save_document.h"
 
 using namespace applique;
 using nlohmann::json;
@@ -163,6 +167,53 @@ TEST_F(ErrorsTest, UnreadableFilesAreNamed) {
   job = good_job();
   job["model"] = "image.png";
   expect_failure(job, 2, {"image.png"});
+  job = good_job();
+  job["decals"][0]["layers"] = {{"normal", "none.png"}};
+  expect_failure(job, 2, {"decal 'crest': layer \"normal\": image 'none.png' does not exist"});
+  job = good_job();
+  job["decals"][0]["mask"] = "none.png";
+  expect_failure(job, 2, {"decal 'crest': mask: image 'none.png' does not exist"});
+}
+
+TEST_F(ErrorsTest, ImagesThatABakeTurnsDownCheckTurnsDownToo) {
+  write_png(folder_ / "black.png", make_image(image_size, image_size, {0, 0, 0, 65535}));
+  const std::string whole = folder_.read("image.png");
+  std::ofstream(folder_ / "cut.png", std::ios::binary) << whole.substr(0, whole.size() / 2);
+  const auto expect_both = [&](const json& job, const std::string& sentence) {
+    for (const char* command : {"check job.json", "bake job.json -o out.glb"}) {
+      expect_failure(job, 2, {sentence}, std::string("-q ") + command);
+      EXPECT_EQ(folder_.run(std::string("-q ") + command).err.find("libpng"), std::string::npos);
+    }
+  };
+  json job = good_job();
+  job["decals"][0]["image"] = "cut.png";
+  expect_both(job, "decal 'crest': image 'cut.png': the file is cut off");
+  for (const char* output : {"bake", "overlay"}) {
+    SCOPED_TRACE(output);
+    job = good_job();
+    job["decals"][0]["output"] = output;
+    job["decals"][0]["layers"] = {{"normal", "black.png"}};
+    expect_both(job, "decal 'crest': 'black.png' is no normal map");
+    job["decals"][0]["layers"] = {{"roughness", "cut.png"}};
+    expect_both(job, "decal 'crest': layer \"roughness\": image 'cut.png': the file is cut off");
+    job["decals"][0].erase("layers");
+    job["decals"][0]["mask"] = "cut.png";
+    expect_both(job, "decal 'crest': mask: image 'cut.png': the file is cut off");
+  }
+  // The report of a check that fails so is written all the same.
+  folder_.write("job.json", job);
+  EXPECT_EQ(folder_.run("check job.json --report report.json").status, 2);
+  EXPECT_TRUE(json::parse(folder_.read("report.json")).is_object());
+}
+
+TEST_F(ErrorsTest, ASizeOfNextToNothingIsNamed) {
+  json job = good_job();
+  job["decals"][0]["features"] = json::array({feature(32, 32, -2.1, 0.1)});
+  job["decals"][0].update({{"size", 1e-9}, {"up", {0, 1, 0}}});
+  folder_.write("job.json", job);
+  const std::string said = folder_.run("check job.json").err;
+  EXPECT_NE(said.find("its \"size\" of 1e-09 is next to nothing"), std::string::npos) << said;
+  EXPECT_EQ(said.find("swapped"), std::string::npos) << said;
 }
 
 TEST_F(ErrorsTest, OutputThatCannotBeWritten) {
@@ -183,6 +234,54 @@ TEST_F(ErrorsTest, OutputsThatWouldDestroyFiles) {
   expect_failure(good_job(), 4, {"'model.glb' is an input"}, "bake job.json -o model.glb");
   expect_failure(good_job(), 4, {"'image.png' is an input"}, "render image.png -o image.png");
   EXPECT_EQ(folder_.read("image.png"), image);
+}
+
+TEST_F(ErrorsTest, OutputsThatWouldDestroyTheModelsOwnFiles) {
+  Document document = load_document(folder_ / "model.glb").value();
+  ASSERT_TRUE(save_document(document, folder_ / "model.gltf"));
+  document = load_document(folder_ / "model.gltf").value();
+  const std::vector<std::filesystem::path> files = files_of(document);
+  ASSERT_EQ(files.size(), 2u) << "a buffer and a texture";
+  const std::string buffer = files[0].filename().string(), texture = files[1].filename().string();
+  ASSERT_TRUE(buffer.ends_with(".bin") && texture.ends_with(".png")) << buffer << ", " << texture;
+  const std::string bytes = folder_.read(buffer), pixels = folder_.read(texture);
+  std::filesystem::create_symlink(texture, folder_ / "link.png");
+  json job = good_job();
+  job["model"] = "model.gltf";
+  const auto expect_kept = [&](const std::string& name, const std::string& command) {
+    SCOPED_TRACE(command);
+    expect_failure(job, 4, {"'" + name + "' is an input"}, command + name);
+    EXPECT_EQ(folder_.read(buffer), bytes);
+    EXPECT_EQ(folder_.read(texture), pixels);
+  };
+  for (const std::string& name : {texture, std::string("link.png"), "./" + texture}) {
+    expect_kept(name, "bake job.json -o out.glb --preview ");
+    expect_kept(name, "explain job.json --stage region -o ");
+    expect_kept(name, "render model.gltf -o ");
+  }
+  for (const std::string& name : {buffer, texture}) {
+    expect_kept(name, "bake job.json -o out.glb --report ");
+    expect_kept(name, "check job.json --report ");
+    expect_kept(name, "check job.json --dump-region ");
+    expect_kept(name, "render model.gltf -o out.png --camera ");
+  }
+  expect_kept("model.gltf", "bake job.json -o ");
+}
+
+TEST_F(ErrorsTest, OutputsThatWouldDestroyTheJobsImages) {
+  const Image grey = make_image(image_size, image_size, {30000, 30000, 30000, 65535});
+  for (const char* name : {"mask.png", "gloss.png", "other.png"}) write_png(folder_ / name, grey);
+  json job = good_job();
+  job["decals"][0].update({{"mask", "mask.png"}, {"layers", {{"roughness", "gloss.png"}}}});
+  job["decals"].push_back(job["decals"][0]);
+  job["decals"][1].update({{"name", "other"}, {"image", "other.png"}});
+  for (const std::string name : {"image.png", "mask.png", "gloss.png", "other.png"}) {
+    const std::string before = folder_.read(name);
+    for (const char* command : {"bake job.json -o out.glb --preview ", "check job.json --report ",
+                                "explain job.json --stage region -o ", "render model.glb --job job.json -o "})
+      expect_failure(job, 4, {"'" + name + "' is an input"}, command + name);
+    EXPECT_EQ(folder_.read(name), before);
+  }
 }
 
 TEST_F(ErrorsTest, OutputOfNoKnownKind) {
@@ -224,6 +323,18 @@ TEST(Usage, WrongUsageIsOne) {
     EXPECT_EQ(result.status, 1) << arguments;
     EXPECT_NE(result.err, "") << arguments;
   }
+}
+
+TEST(Usage, WithoutAKnownCommandTheyAreListed) {
+  const CommandFolder folder;
+  EXPECT_NE(folder.run("frobnicate")
+                .err.find("there is no command 'frobnicate', expected one of bake, check, "
+                          "explain, inspect, render"),
+            std::string::npos);
+  EXPECT_NE(folder.run("bka job.json").err.find("there is no command 'bka', expected 'bake'"),
+            std::string::npos);
+  EXPECT_NE(folder.run("").err.find("a command is needed: bake, check, explain, inspect, render"),
+            std::string::npos);
 }
 
 TEST(Usage, HelpHasExamples) {
