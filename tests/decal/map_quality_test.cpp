@@ -48,6 +48,19 @@ TEST(MapQuality, AWarpMayTurnOverByItsInfluenceAlone) {
   EXPECT_EQ(flips(warp, {0, 1, 0, 1, 0, 1}), 0U);  // Everything moves.
 }
 
+TEST(MapQuality, AreaIsExactInTrianglesOfAnySize) {
+  const Region region =
+      Region::from_contour({{0, 0}, {512, 0}, {512, 512}, {256, 300}, {0, 512}}, ImageFrame{512, 512})
+          .value();
+  for (const double size : {2.0, 1e3, 1e6, 1e9, 1e12}) {
+    // The two sides of a line through the region.
+    const Vec2 a = size * Vec2(-1, -0.7), b = size * Vec2(1, 0.7);
+    const double area = area_in_region(region, {a, b, size * Vec2(-2, 2)}) +
+                        area_in_region(region, {b, a, size * Vec2(2, -2)});
+    EXPECT_NEAR(area, region.area(), 1e-4 * region.area()) << size;
+  }
+}
+
 /// Two right triangles that make up the unit square, or lie over one another, in the plane and in the image.
 MapQuality quality_of_two(const std::vector<Vec2>& plane, const std::vector<Vec2>& image) {
   const Region region =

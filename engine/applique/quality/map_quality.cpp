@@ -103,9 +103,10 @@ double area_in_region(const Region& region, const std::array<Vec2, 3>& triangle)
     return whole;
   std::vector<Vec2> polygon = region.polygon();
   for (int k = 0; k < 3; ++k) polygon = clip(polygon, triangle[k], triangle[(k + 1) % 3]);
+  // About one of its own corners: the triangle's may be so far away that the area is lost to rounding.
   double area = 0;
-  for (std::size_t i = 0; i < polygon.size(); ++i)
-    area += 0.5 * cross(polygon[i] - triangle[0], polygon[(i + 1) % polygon.size()] - triangle[0]);
+  for (std::size_t i = 2; i < polygon.size(); ++i)
+    area += 0.5 * cross(polygon[i - 1] - polygon[0], polygon[i] - polygon[0]);
   return std::clamp(area, 0.0, whole);
 }
 
