@@ -165,6 +165,9 @@ Result<bool> DecalLayers::shows_in_region() {
 /// Why nothing of the decal is seen, whatever its layers; empty: some is.
 Result<std::string> DecalLayers::why_invisible() {
   if (decal_->job.opacity == 0) return "its \"opacity\" is 0";
+  // An overlay is seen by the alpha of its base colour, the first layer.
+  if (decal_->job.output == DecalOutput::overlay)
+    if (const std::string why = why_invisible(0); !why.empty()) return "its base colour's " + why;
   APPLIQUE_TRY(const bool shows, shows_in_region());
   if (shows) return "";
   if (decal_->job.mask.empty())
@@ -176,25 +179,27 @@ Result<std::string> DecalLayers::why_invisible() {
       decal_->job.mask.filename().string());
 }
 
-/// Why nothing of a layer is seen, where its decal is; empty: some is.
+/// What of a layer makes that nothing of it is seen, where its decal is; empty: some is.
 std::string DecalLayers::why_invisible(std::size_t index) const {
   const DecalLayer& layer = decal_->job.layers[index];
-  if (layer.opacity == 0) return "its \"opacity\" is 0";
+  if (layer.opacity == 0) return "\"opacity\" is 0";
   if (!transparent_.contains(index)) return "";
-  return fmt::format("its image '{}' is transparent all over", layer.image.filename().string());
+  return fmt::format("image '{}' is transparent all over", layer.image.filename().string());
 }
 
 Result<std::vector<Warning>> DecalLayers::warnings() {
   std::vector<Warning> warnings = faulty_normals_;
   const auto add = [&](const std::string& label, const std::string& why) {
-    if (!why.empty())
-      warnings.push_back({"invisible", fmt::format("{}: nothing of it is seen, because {}", label, why)});
+    warnings.push_back({"invisible", fmt::format("{}: nothing of it is seen, because {}", label, why)});
   };
   APPLIQUE_TRY(const std::string why, why_invisible());
-  add(fmt::format("decal '{}'", decal_->job.name), why);
-  if (!why.empty()) return warnings;
+  if (!why.empty()) {
+    add(fmt::format("decal '{}'", decal_->job.name), why);
+    return warnings;
+  }
   for (std::size_t i = 0; i < decal_->job.layers.size(); ++i)
-    add(label_of(decal_->job, decal_->job.layers[i]), why_invisible(i));
+    if (const std::string of_layer = why_invisible(i); !of_layer.empty())
+      add(label_of(decal_->job, decal_->job.layers[i]), "its " + of_layer);
   return warnings;
 }
 

@@ -231,7 +231,12 @@ TEST_F(LayersTest, WhatIsNotSeenIsWarnedOf) {
   expect_warning({{"layers", {{"roughness", {{"value", 0}, {"opacity", 0}}}}}},
                  {"decal 'crest': layer \"roughness\": nothing of it is seen", "\"opacity\" is 0"});
   expect_warning({{"layers", {{"roughness", "clear.png"}}}},
-                 {"layer \"roughness\"", "'clear.png' is transparent all over"});
+                 {"layer \"roughness\"", "its image 'clear.png' is transparent all over"});
+  expect_warning({{"layers", {{"baseColor", {{"value", {0, 0, 0}}, {"opacity", 0}}}}}},
+                 {"nothing of it is seen", "\"opacity\" is 0"});
+  EXPECT_EQ(warnings()[0]["message"],
+            "decal 'crest': nothing of it is seen, because its base colour's \"opacity\" is 0")
+      << "of an overlay, by whose base colour all is seen";
 }
 
 TEST_F(LayersTest, WrongLayersAreNamed) {
