@@ -107,9 +107,9 @@ Result<void> check_uvs(const SolvedJob& job, const BakeTarget& target) {
 }
 
 /// Tells a face of a normal map how the image lies in the tangent frames of its corners.
-void turn_into_tangent_space(const ModelPart& part, const std::array<std::uint32_t, 3>& triangle,
-                             const std::array<Tangent, 3>& frames, const ImageFrame& frame,
-                             TransferFace& face) {
+void turn_into_tangent_space(const ModelPart& part, std::size_t index, const std::array<Tangent, 3>& frames,
+                             const ImageFrame& frame, TransferFace& face) {
+  const auto& triangle = part.triangles[index];
   const Vec3& origin = part.positions[triangle[0]];
   const Vec3 p1 = part.positions[triangle[1]] - origin, p2 = part.positions[triangle[2]] - origin;
   const std::array<Pixel, 3> q = {frame.to_pixel(face.image[0]), frame.to_pixel(face.image[1]),
@@ -120,7 +120,7 @@ void turn_into_tangent_space(const ModelPart& part, const std::array<std::uint32
   const Vec3 right = side * (y2 * p1 - y1 * p2), up = side * (x1 * p2 - x2 * p1);
   double turn = 0;
   for (std::size_t k = 0; k < 3; ++k) {
-    const Vec3& normal = part.normals[triangle[k]];
+    const Vec3 normal = shading_normal(part, index, k);
     const Vec3 tangent = (frames[k].direction - normal.dot(frames[k].direction) * normal).normalized();
     const Vec3 bitangent = frames[k].sign * normal.cross(tangent);
     const Vec2 along(right.dot(tangent), right.dot(bitangent)), across(up.dot(tangent), up.dot(bitangent));
@@ -299,7 +299,7 @@ Transfer lay_out_transfer(const SolvedJob& job, const BakeTarget& target, const 
     }
     if (transfer.encoding == Encoding::normal) {
       const ModelPart& owner = job.model.parts[source.part];
-      turn_into_tangent_space(owner, owner.triangles[source.triangle], frames[source.part][source.triangle],
+      turn_into_tangent_space(owner, source.triangle, frames[source.part][source.triangle],
                               decal.region.frame(), face);
     }
     face.linear = map.linear[f] != 0;
