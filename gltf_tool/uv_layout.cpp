@@ -91,6 +91,11 @@ std::array<Texel, 3> own_corners(const SolvedJob& job, const SeparatedTriangle& 
   return {Texel{0, 0}, Texel{1, 0}, Texel{0, 1}};
 }
 
+/// Texels a side that an atlas in place of a texture may have for the decal's sake.
+int largest_wanted(const SolvedJob& job, const LayoutRequest& request) {
+  return std::min(std::max({job.job.texture_size, request.texture[0], request.texture[1]}), largest_side);
+}
+
 /// Charts a part of the triangles and remembers the place of their corners.
 class Charting {
  public:
@@ -105,9 +110,10 @@ class Charting {
       corners[i] = own_corners(job_, request_.triangles[i]);
       charts.push_back({{i}, false, {0, 0}, {0, 0, 0, 0}});
     }
-    if (request_.created_size == 0)
-      for (const AtlasChart& chart : charts)
-        if (!chart.kept) refine(chart);
+    if (request_.created_size != 0) return;
+    for (const AtlasChart& chart : charts)
+      if (!chart.kept) refine(chart);
+    bound();
   }
 
   std::vector<std::array<Texel, 3>> corners;  ///< Old texels where the chart is kept, else new ones.
@@ -129,6 +135,24 @@ class Charting {
     for (const std::uint32_t i : chart.triangles)
       for (Texel& corner : corners[i])
         for (double& x : corner) x *= density;
+  }
+
+  /// What is laid out afresh takes no more than a part of the texture that is asked for: where a decal is
+  /// small in its triangles, these would need many texels for each of its pixels.
+  void bound() {
+    constexpr double most = 0.5;
+    double area = 0;
+    for (const AtlasChart& chart : charts)
+      for (const std::uint32_t i : chart.triangles)
+        if (!chart.kept) area += 0.5 * std::abs(doubled_area(corners[i]));
+    const double side = largest_wanted(job_, request_);
+    const double scale = std::sqrt(most / area) * side;
+    if (!(scale < 1)) return;
+    for (const AtlasChart& chart : charts)
+      for (const std::uint32_t i : chart.triangles)
+        if (!chart.kept)
+          for (Texel& corner : corners[i])
+            for (double& x : corner) x *= scale;
   }
 
   /// Returns the triangles that cannot keep theirs.
@@ -378,8 +402,7 @@ Result<UvLayout> lay_out_uvs(const SolvedJob& job, const LayoutRequest& request)
       if (auto layout = packing.pack_scaled(1e6, gutter, request.created_size)) return std::move(*layout);
     return fail(ErrorCode::not_solved, no_room(job, request));
   }
-  const int most =
-      std::min(std::max({job.job.texture_size, request.texture[0], request.texture[1]}), largest_side);
+  const int most = largest_wanted(job, request);
   for (; fineness > 1; fineness -= 2)
     if (auto layout = packing.pack_exactly(fineness, full_gutter, most)) return std::move(*layout);
   for (int gutter = full_gutter; gutter > 0; gutter /= 2) {

@@ -228,6 +228,24 @@ TEST_F(UvConflictTest, KeepsDetailWhereTheOldTextureHasLittleRoom) {
   EXPECT_GT(texels, 5) << "it was 1.3";
 }
 
+/// A texel for each of its pixels would take many textures for the triangle round it.
+TEST_F(UvConflictTest, ATinyDecalGetsNoMoreThanTheTextureThatIsAskedFor) {
+  write_model({make_mirrored_wall()});
+  for (const double size : {1e-3, 1e-6}) {
+    json job = job_at(0.4, 0.1);
+    job["decals"][0]["size"] = size;
+    const json report = bake(job);
+    EXPECT_LT(report["decals"][0]["texel_density"]["texels_per_pixel"], 0.5);
+    EXPECT_EQ(report["decals"][0]["warnings"].size(), 1u);
+    EXPECT_EQ(report["decals"][0]["warnings"][0]["code"], "low_texel_density");
+    const Model after = load("out.glb");
+    for (const ModelMaterial& material : after.materials) {
+      const Image image = load_model_image(after, *material.image).value();
+      EXPECT_LE(std::max(image.width, image.height), 2 * 256) << "twice \"texture_size\"";
+    }
+  }
+}
+
 TEST_F(UvConflictTest, ErrorNamesTheDecalTheMaterialAndTheTexels) {
   write_model({make_box()});
   json job = job_at(0, 0);

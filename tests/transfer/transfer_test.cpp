@@ -237,6 +237,55 @@ TEST(TransferOnCpu, TheGutterGoesOnWhereTheFaceEnds) {
   }
 }
 
+// A small image in the middle of a large square of two triangles, placed at random: only blocks near it are
+// drawn, and the texture is what it is when the square is cut into faces too small to be left out in part.
+// Beside it a face that shows the image up to its edge may not go on into the square.
+TEST(TransferOnCpu, OnlyWhatShowsTheImageOfALargeFaceIsDrawn) {
+  constexpr int side = 512, pieces = 8;
+  std::mt19937 random(4);
+  std::uniform_real_distribution<double> unit(0, 1);
+  const DecalImage image = make_decal(64, 64, [&](int x, int y) {
+    return std::array<float, 4>{static_cast<float>(x) / 63, static_cast<float>(y) / 63, 0.5F, 1};
+  });
+  for (int round = 0; round < 6; ++round) {
+    const double angle = 6.3 * unit(random), size = 16 + 30 * unit(random);
+    const std::array<double, 2> middle = {120 + 200 * unit(random), 120 + 200 * unit(random)};
+    const auto pixel_at = [&](const Texel& t) {
+      const double x = (t[0] - middle[0]) / size, y = (t[1] - middle[1]) / size;
+      return Pixel{32 + 64 * (std::cos(angle) * x + std::sin(angle) * y),
+                   32 + 64 * (-std::sin(angle) * x + std::cos(angle) * y)};
+    };
+    const auto square = [&](double x, double y, double width, std::vector<TransferFace>& faces) {
+      const std::array<Texel, 4> t = {{{x, y}, {x + width, y}, {x + width, y + width}, {x, y + width}}};
+      for (const auto& [a, b, c] : {std::array{0, 1, 2}, {0, 2, 3}})
+        faces.push_back(
+            face_at(image, {{t[a], t[b], t[c]}}, {{pixel_at(t[a]), pixel_at(t[b]), pixel_at(t[c])}}));
+    };
+    Transfer large, small;
+    large.image = small.image = &image;
+    constexpr double low = 4, width = 496;
+    square(low, low, width, large.faces);
+    for (int i = 0; i < pieces * pieces; ++i)
+      square(low + width / pieces * (i % pieces), low + width / pieces * (i / pieces), width / pieces,
+             small.faces);
+    const TransferFace neighbour =
+        face_at(image, {{{500, 4}, {510, 4}, {500, 500}}}, {{{0, 0}, {64, 0}, {0, 64}}});
+    large.faces.push_back(neighbour);
+    small.faces.push_back(neighbour);
+    Image drawn = make_image(side, side, {0, 0, 0, full}), expected = drawn;
+    const TransferResult result = transfer_on_cpu(large, drawn);
+    const TransferResult whole = transfer_on_cpu(small, expected);
+    EXPECT_LT(5 * result.covered_texels, whole.covered_texels);
+    EXPECT_EQ(result.shared_texels, 0U);
+    int painted = 0;
+    for (std::size_t i = 0; i < drawn.rgba.size(); ++i) {
+      ASSERT_NEAR(drawn.rgba[i], expected.rgba[i], 257) << "round " << round << ", value " << i;
+      painted += i % 4 == 0 && drawn.rgba[i] != 0;
+    }
+    EXPECT_GT(painted, 200);
+  }
+}
+
 TEST(TransferOnCpu, InfluenceIsInterpolatedBetweenTheCorners) {
   for (const int grid : {2, 30}) {  // Refined; the warp at each texel.
     SyntheticOptions options;

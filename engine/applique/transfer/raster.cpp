@@ -70,12 +70,10 @@ std::optional<Bounds> bounds_of(const std::array<Texel, 3>& corners) {
   return bounds;
 }
 
-// Calls `visit(corners, bounds)` for every copy of a triangle that touches `window`, a rectangle of the
-// plane.
+// Calls `visit(x, y, bounds)` for every copy of a part of the plane that touches `window`, a rectangle of it.
 template <class Visit>
-void for_each_copy(const Transfer& transfer, const std::array<Texel, 3>& corners, int width, int height,
+void for_each_copy(const Transfer& transfer, const std::optional<Bounds>& bounds, int width, int height,
                    const TexelRect& window, Visit visit) {
-  const std::optional<Bounds> bounds = bounds_of(corners);
   if (!bounds) return;
   const AxisCopies copies_x(transfer.wrap_u, width, bounds->lower[0], bounds->upper[0], window.x,
                             window.x + window.width);
@@ -159,9 +157,10 @@ struct BlockMask {
   }
 };
 
-// Jobs for the blocks of the region that a triangle (plane coordinates) touches. `allowed` limits the blocks.
-void add_jobs(FixedCorners corners, std::uint32_t key, const TexelRect& region, const BlockMask* allowed,
-              std::vector<shader::RasterJob>& jobs) {
+// Jobs for the blocks of the region that a triangle (plane coordinates) touches, of those that meet `within`.
+// `allowed` limits the blocks.
+void add_jobs(FixedCorners corners, const Bounds& within, std::uint32_t key, const TexelRect& region,
+              const BlockMask* allowed, std::vector<shader::RasterJob>& jobs) {
   const auto edge_area = [](const auto& p, const auto& q, const auto& r) {
     return (q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0]);
   };
@@ -173,9 +172,11 @@ void add_jobs(FixedCorners corners, std::uint32_t key, const TexelRect& region, 
   const std::int64_t origin[2] = {region.x, region.y}, size[2] = {region.width, region.height};
   for (int axis = 0; axis < 2; ++axis) {
     const auto [low, high] = std::minmax({corners[0][axis], corners[1][axis], corners[2][axis]});
-    const std::int64_t low_texel = floor_divide(low, subtexels) - origin[axis];
-    const std::int64_t high_texel = floor_divide(high, subtexels) - origin[axis];
-    if (high_texel < 0 || low_texel >= size[axis]) return;
+    const auto lower = static_cast<std::int64_t>(std::floor(within.lower[axis]));
+    const auto upper = static_cast<std::int64_t>(std::ceil(within.upper[axis]));
+    const std::int64_t low_texel = std::max(floor_divide(low, subtexels), lower) - origin[axis];
+    const std::int64_t high_texel = std::min(floor_divide(high, subtexels), upper) - origin[axis];
+    if (high_texel < 0 || low_texel >= size[axis] || high_texel < low_texel) return;
     first[axis] = std::max<std::int64_t>(low_texel, 0) / block;
     last[axis] = std::min(high_texel, size[axis] - 1) / block;
   }
@@ -271,6 +272,79 @@ Footprint footprint_of(const AffineMap& map, std::size_t levels) {
   return footprint;
 }
 
+// A place of a face, in the texture and in the image (pixels).
+struct FacePlace {
+  Texel texel;
+  std::array<double, 2> pixel;
+};
+
+// The part of a convex polygon where sign * pixel[axis] <= limit.
+std::vector<FacePlace> clip(const std::vector<FacePlace>& polygon, std::size_t axis, double sign,
+                            double limit) {
+  std::vector<FacePlace> kept;
+  for (std::size_t i = 0; i < polygon.size(); ++i) {
+    const FacePlace &from = polygon[i], &to = polygon[(i + 1) % polygon.size()];
+    const double before = limit - sign * from.pixel[axis], after = limit - sign * to.pixel[axis];
+    if (before >= 0) kept.push_back(from);
+    if ((before < 0) == (after < 0)) continue;
+    const double t = before / (before - after);
+    FacePlace& place = kept.emplace_back();
+    for (std::size_t c = 0; c < 2; ++c) {
+      place.texel[c] = from.texel[c] + t * (to.texel[c] - from.texel[c]);
+      place.pixel[c] = from.pixel[c] + t * (to.pixel[c] - from.pixel[c]);
+    }
+  }
+  return kept;
+}
+
+// The part of a large linear face whose texels, or those that extend it in the gutter, may show some of the
+// image: a small decal may lie in a large triangle. None: no such part. Other faces count as a whole.
+std::optional<Bounds> shown_bounds(const Transfer& transfer, const TransferFace& face) {
+  constexpr double large = 128;  // Texels a side.
+  const std::optional<Bounds> whole = bounds_of(face.texel);
+  const bool linear = face.linear || transfer.warp == nullptr || transfer.warp->steps == 0;
+  if (!whole || !linear || triangle_area2(face.texel) == 0) return whole;
+  if (whole->upper[0] - whole->lower[0] < large && whole->upper[1] - whole->lower[1] < large) return whole;
+  const ImageFrame& frame = transfer.image->frame;
+  std::vector<FacePlace> polygon;
+  std::array<std::array<double, 2>, 3> pixels;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Pixel pixel = frame.to_pixel(face.image[k]);
+    pixels[k] = {pixel.x, pixel.y};
+    polygon.push_back({face.texel[k], pixels[k]});
+  }
+  const AffineMap map = affine_map(face.texel, pixels);
+  const Footprint footprint = footprint_of(map, transfer.image->levels.size());
+  const std::array<double, 2> size = {frame.width, frame.height};
+  for (std::size_t axis = 0; axis < 2; ++axis) {
+    // What a texel's footprint and the filter of its level reach.
+    const double margin = std::abs(map.dx[axis]) + std::abs(map.dy[axis]) + std::ldexp(2.0, footprint.level);
+    polygon = clip(polygon, axis, 1, size[axis] + margin);
+    polygon = clip(polygon, axis, -1, margin);
+  }
+  if (polygon.empty()) return std::nullopt;
+  Bounds shown{{HUGE_VAL, HUGE_VAL}, {-HUGE_VAL, -HUGE_VAL}};
+  const double reach = std::min(transfer.gutter, 255u) + 2.0;
+  for (const FacePlace& place : polygon)
+    for (std::size_t axis = 0; axis < 2; ++axis) {
+      shown.lower[axis] = std::min(shown.lower[axis], place.texel[axis] - reach);
+      shown.upper[axis] = std::max(shown.upper[axis], place.texel[axis] + reach);
+    }
+  for (std::size_t axis = 0; axis < 2; ++axis) {
+    shown.lower[axis] = std::max(shown.lower[axis], whole->lower[axis]);
+    shown.upper[axis] = std::min(shown.upper[axis], whole->upper[axis]);
+  }
+  return shown;
+}
+
+// Whether there is more of a face than what shows the image.
+bool is_clipped(const Transfer& transfer, const TransferFace& face) {
+  const std::optional<Bounds> whole = bounds_of(face.texel), shown = shown_bounds(transfer, face);
+  if (!whole) return false;
+  return !shown || !std::equal(shown->lower, shown->lower + 2, whole->lower) ||
+         !std::equal(shown->upper, shown->upper + 2, whole->upper);
+}
+
 }  // namespace
 
 std::vector<std::uint32_t> sheets_of(const Transfer& transfer) {
@@ -292,16 +366,20 @@ TilePlan plan_tile(const Transfer& transfer, int width, int height, const TexelR
     return TexelRect{x0, y0, x1 - x0, y1 - y0};
   };
 
-  std::vector<FixedCorners> fixed;
+  struct Shape {
+    FixedCorners corners;
+    Bounds shown;
+  };
+  std::vector<Shape> shapes;  // By placement.
   const TexelRect window = with_margin(tile);
   int x0 = tile.x + tile.width, y0 = tile.y + tile.height, x1 = tile.x, y1 = tile.y;
   for (std::uint32_t face = 0; face < transfer.faces.size(); ++face) {
     if (transfer.faces[face].sheet != sheet) continue;
     const auto& corners = transfer.faces[face].texel;
-    for_each_copy(transfer, corners, width, height, window,
+    for_each_copy(transfer, shown_bounds(transfer, transfer.faces[face]), width, height, window,
                   [&](const AxisCopy& x, const AxisCopy& y, const Bounds& bounds) {
                     plan.placements.push_back({face, moved_corners(corners, x, y)});
-                    fixed.push_back(fixed_corners(corners, x, y));
+                    shapes.push_back({fixed_corners(corners, x, y), bounds});
                     x0 = std::min(x0, static_cast<int>(std::floor(bounds.lower[0])) - gutter - 1);
                     y0 = std::min(y0, static_cast<int>(std::floor(bounds.lower[1])) - gutter - 1);
                     x1 = std::max(x1, static_cast<int>(std::ceil(bounds.upper[0])) + gutter + 1);
@@ -319,7 +397,8 @@ TilePlan plan_tile(const Transfer& transfer, int width, int height, const TexelR
       corner[0] -= plan.region.x;
       corner[1] -= plan.region.y;
     }
-    add_jobs(fixed[i], static_cast<std::uint32_t>(i + 1), plan.region, nullptr, plan.jobs);
+    add_jobs(shapes[i].corners, shapes[i].shown, static_cast<std::uint32_t>(i + 1), plan.region, nullptr,
+             plan.jobs);
   }
 
   BlockMask touched(plan.region);
@@ -333,14 +412,16 @@ TilePlan plan_tile(const Transfer& transfer, int width, int height, const TexelR
   plan.nearest_blocks = changed.dilated(0, reach).list();
 
   const auto mark = [&](const std::array<Texel, 3>& corners, std::uint32_t bit) {
-    for_each_copy(transfer, corners, width, height, plan.region,
-                  [&](const AxisCopy& x, const AxisCopy& y, const Bounds&) {
-                    add_jobs(fixed_corners(corners, x, y), bit, plan.region, &seen, plan.foreign_jobs);
+    for_each_copy(transfer, bounds_of(corners), width, height, plan.region,
+                  [&](const AxisCopy& x, const AxisCopy& y, const Bounds& bounds) {
+                    add_jobs(fixed_corners(corners, x, y), bounds, bit, plan.region, &seen,
+                             plan.foreign_jobs);
                   });
   };
   for (const auto& corners : transfer.foreign) mark(corners, shader::foreign_bit);
+  // What does not show the image keeps others' gutters out all the same.
   for (const TransferFace& face : transfer.faces)
-    if (face.sheet != sheet) mark(face.texel, shader::sheet_bit);
+    if (face.sheet != sheet || is_clipped(transfer, face)) mark(face.texel, shader::sheet_bit);
   return plan;
 }
 
