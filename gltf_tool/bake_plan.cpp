@@ -13,6 +13,7 @@
 #include "edit.h"
 #include "instances.h"
 #include "tangents.h"
+#include "uv_coverage.h"
 
 namespace applique {
 namespace {
@@ -73,6 +74,32 @@ class Surroundings {
   std::array<WrapMode, 2> wrap_;
   std::array<double, 2> size_;
   std::array<std::array<double, 2>, 2> range_ = {{{1e9, -1e9}, {1e9, -1e9}}};
+};
+
+/// Tells which triangles show for the most part what a transfer's faces do: stacked or mirrored ones.
+class Copies {
+ public:
+  Copies(const Transfer& transfer, int width, int height)
+      : size_({static_cast<double>(width), static_cast<double>(height)}),
+        coverage_(width, height, transfer.wrap_u, transfer.wrap_v) {
+    for (int twice = 0; twice < 2; ++twice)  // So that each texel of a face counts as shared.
+      for (const TransferFace& face : transfer.faces) coverage_.add(in_texture(face.texel));
+  }
+
+  [[nodiscard]] bool has(const std::array<Texel, 3>& corners) const {
+    const UvCoverage::Count count = coverage_.under(in_texture(corners));
+    return 2 * count.shared > count.covered;
+  }
+
+ private:
+  [[nodiscard]] UvCoverage::Triangle in_texture(const std::array<Texel, 3>& texel) const {
+    UvCoverage::Triangle uvs = {};
+    for (std::size_t k = 0; k < 3; ++k) uvs[k] = {texel[k][0] / size_[0], texel[k][1] / size_[1]};
+    return uvs;
+  }
+
+  std::array<double, 2> size_;
+  UvCoverage coverage_;
 };
 
 /// A share of 1 as the image stores it.
@@ -344,11 +371,14 @@ BakeTransfer lay_out_transfer(const SolvedJob& job, const BakeTarget& target, co
     add_face(f, texture->second, job.model.parts[*part].triangles.size() + source.triangle);
   });
   const Surroundings surroundings(transfer, width, height);
+  std::optional<Copies> copies;
+  if (decal.job.uv_conflict == UvConflict::share) copies.emplace(transfer, width, height);
   for (const auto& [part, triangles] : own)
     for (std::uint32_t t = 0; t < triangles.size(); ++t) {
       if (triangles[t] != 0) continue;
       const std::array<Texel, 3> corners = texture_on(part).corners(t);
-      if (surroundings.touch(corners)) transfer.foreign.push_back(corners);
+      if (!surroundings.touch(corners)) continue;
+      (copies && copies->has(corners) ? transfer.copies : transfer.foreign).push_back(corners);
     }
   return transfer;
 }

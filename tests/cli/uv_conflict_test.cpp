@@ -272,6 +272,28 @@ TEST_F(UvConflictTest, SharePutsItOnEveryFace) {
   EXPECT_TRUE(is_red(colour_near(load("out.glb"), {0, 0, -1})));
 }
 
+TEST_F(UvConflictTest, SharesUpToTheBordersOfIslands) {
+  // Stacked islands, of which one is a little larger.
+  SmallMesh front = make_plane("Front", 8), back = make_plane("Back", 8, 0, -1);
+  for (auto& uv : front.uvs)
+    for (double& x : uv) x = 0.5 + 0.8 * (x - 0.5);
+  for (auto& uv : back.uvs)
+    for (double& x : uv) x = 0.5 + 0.82 * (x - 0.5);
+  for (const auto& t : back.triangles) front.triangles.push_back({t[0] + 81, t[1] + 81, t[2] + 81});
+  front.positions.insert(front.positions.end(), back.positions.begin(), back.positions.end());
+  front.uvs.insert(front.uvs.end(), back.uvs.begin(), back.uvs.end());
+  write_model({front});
+  json job = job_at(0.7, 0);
+  job["decals"][0].update({{"uv_conflict", "share"}});
+  bake(job);
+  const Model after = load("out.glb");
+  for (const double y : {-0.4, -0.1, 0.05, 0.3}) {
+    EXPECT_TRUE(is_red(colour_near(after, {0.999, y, 0}))) << y;
+    EXPECT_TRUE(is_red(colour_near(after, {0.999, y, -1}))) << y;
+    EXPECT_FALSE(is_red(colour_near(after, {0.1, y, -1}))) << y;
+  }
+}
+
 TEST_F(UvConflictTest, SharesBesideADecalThatIsSeparated) {
   write_model({make_mirrored_wall()});
   write_png(folder_ / "blue.png", make_image(image_size, image_size, {0, 0, 0xffff, 0xffff}));
