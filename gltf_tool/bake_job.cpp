@@ -190,7 +190,7 @@ std::vector<SlotSeams> seams_by_slot(const SolvedJob& job, std::vector<TargetWor
   return slots;
 }
 
-void join_slot(const SlotSeams& slot) {
+void join_slot(const SlotSeams& slot, SeamFit fit) {
   std::vector<SeamTexture> textures;
   for (std::size_t i = 0; i < slot.works.size(); ++i) {
     TargetWork& work = *slot.works[i];
@@ -200,7 +200,7 @@ void join_slot(const SlotSeams& slot) {
       for (std::size_t c = 0; c < 4; ++c) texture.channels[c] |= layer.channels[c];
     textures.push_back(texture);
   }
-  join_seams(slot.seams, textures, encoding_of(slot.works.front()->target.slot));
+  join_seams(slot.seams, textures, encoding_of(slot.works.front()->target.slot), fit);
 }
 
 /// Transfers every decal into its textures, in the order of the job.
@@ -241,7 +241,7 @@ Result<void> transfer_all(SolvedJob& job, std::vector<TargetWork>& works, GpuBak
     job.decals[d].warnings.insert(job.decals[d].warnings.end(), layers[d].warnings().begin(),
                                   layers[d].warnings().end());
   const Stopwatch watch;
-  for (const SlotSeams& slot : seams) join_slot(slot);
+  for (const SlotSeams& slot : seams) join_slot(slot, job.job.seams);
   baked.times.add("seams", watch.seconds());
   for (std::size_t d = 0; d < job.decals.size(); ++d) {
     baked.densities.push_back(texel_density(job.decals[d], transfers[d]));

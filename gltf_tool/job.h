@@ -10,6 +10,7 @@
 #include "applique/base/error.h"
 #include "applique/base/types.h"
 #include "applique/decal.h"
+#include "applique/transfer/seams.h"
 #include "applique/transfer/transfer.h"
 
 #include "material.h"
@@ -100,6 +101,7 @@ struct Job {
   std::filesystem::path model;  ///< Absolute, or relative to the working folder.
   int texture_size = 2048;      ///< Texels a side of base colours that the job creates.
   std::uint32_t gutter = 16;    ///< As Transfer::gutter.
+  SeamFit seams = SeamFit::sharp;
   std::optional<int>
       resolution;  ///< Texels a side of other textures that it creates; none: the base colour's.
   std::vector<DecalJob> decals;  ///< At least one; later ones lie over earlier ones.

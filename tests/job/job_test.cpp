@@ -52,7 +52,7 @@ json valid_job() {
 
 TEST_F(JobTest, ReadsEveryField) {
   const auto job = load_text(R"({
-    "version": 1, "model": "models/head.glb", "texture_size": 512,
+    "version": 1, "model": "models/head.glb", "texture_size": 512, "seams": "exact",
     "decals": [
       { "name": "a", "image": "a.png", "mirrored": true, "region": { "contour": [[0, 0], [10, 0], [10, 20]] },
         "features": [
@@ -71,6 +71,7 @@ TEST_F(JobTest, ReadsEveryField) {
   ASSERT_TRUE(job) << job.error().message;
   EXPECT_EQ(job->model, folder_ / "models/head.glb");
   EXPECT_EQ(job->texture_size, 512);
+  EXPECT_EQ(job->seams, SeamFit::exact);
   ASSERT_EQ(job->decals.size(), 3u);
 
   const DecalJob& a = job->decals[0];
@@ -132,6 +133,7 @@ TEST_F(JobTest, LeavesOutWhatMayBeLeftOut) {
   ASSERT_TRUE(job) << job.error().message;
   const DecalJob& decal = job->decals[0];
   EXPECT_EQ(job->texture_size, 2048);
+  EXPECT_EQ(job->seams, SeamFit::sharp);
   EXPECT_FALSE(decal.mirrored);
   EXPECT_TRUE(std::holds_alternative<AutomaticRegion>(decal.region));
   EXPECT_FALSE(std::get<PositionPlace>(decal.features[0].place).max_distance);

@@ -253,6 +253,13 @@ TEST_F(Models, SeamsAreBroughtTogether) {
               most * std::accumulate(unjoined.begin(), unjoined.end(), 0.0) + 1);
     EXPECT_LE(joined.back(), unjoined.back() + 1);
     EXPECT_LE(moved, 16);
+
+    after = transferred;
+    join_seams(seams, textures, Encoding::colour, SeamFit::exact);
+    const auto exact = differences_across(seams, textures);
+    std::printf("%-16s joined exactly: at most %.2f of 255, 99 %% %.2f\n", job.name.c_str(), exact.back(),
+                at(exact, 0.99));
+    EXPECT_LE(job.name == "tiger" ? at(exact, 0.99) : exact.back(), 2);
   }
 }
 

@@ -15,10 +15,6 @@ namespace {
 constexpr double spacing = 0.5;            // texels between samples
 constexpr double worn_seam = 8 / 255.0;    // a seam that the texture had before
 constexpr double gutter_stiffness = 0.05;  // of a texel out of sight against one that shows
-constexpr double agreement = 6;            // of a sample's difference against a texel's change
-// How far a texel may go. To agree everywhere, two sides whose texels are out of step would have to be smooth
-// along the seam, which smears what crosses it.
-constexpr double most_shown = 3 / 255.0, most_in_gutter = 16 / 255.0;
 constexpr int rounds = 6;    // each is a factorisation; what is still at odds then stays within the bounds
 constexpr int releases = 3;  // rounds in which held values may come back: later on they would go to and fro
 
@@ -27,6 +23,17 @@ int wrapped(std::int64_t texel, int size, WrapMode mode) {
   const std::int64_t period = mode == WrapMode::repeat ? size : 2 * std::int64_t{size};
   const std::int64_t in = ((texel % period) + period) % period;
   return static_cast<int>(in < size ? in : period - 1 - in);
+}
+
+struct FitTerms {
+  double agreement;                   ///< Stiffness of a sample's difference against a texel's change.
+  double most_shown, most_in_gutter;  ///< How far a texel may go.
+  int passes;  ///< Each weighs differences, which are linear light, by what they are where the last one came
+               ///< to.
+};
+FitTerms terms_of(SeamFit fit) {
+  if (fit == SeamFit::exact) return {1e3, 1, 1, 4};
+  return {6, 3 / 255.0, 16 / 255.0, 1};
 }
 
 /// A texel of one of the textures.
@@ -187,8 +194,13 @@ std::vector<Sample> worth_joining(std::vector<Sample> samples, std::span<const S
 class Channel {
  public:
   Channel(const std::vector<Sample>& samples, const Unknowns& unknowns, std::span<const SeamTexture> textures,
-          int channel, const Coding& coding)
-      : samples_(samples), unknowns_(unknowns), textures_(textures), channel_(channel), coding_(coding) {
+          int channel, const Coding& coding, const FitTerms& terms)
+      : samples_(samples),
+        unknowns_(unknowns),
+        textures_(textures),
+        channel_(channel),
+        coding_(coding),
+        terms_(terms) {
     const auto count = static_cast<Eigen::Index>(unknowns.places().size());
     first_.resize(count);
     for (Eigen::Index i = 0; i < count; ++i)
@@ -197,7 +209,7 @@ class Channel {
     lower_.resize(count);
     upper_.resize(count);
     for (Eigen::Index i = 0; i < count; ++i) {
-      const double reach = unknowns.shown()[i] ? most_shown : most_in_gutter;
+      const double reach = unknowns.shown()[i] ? terms.most_shown : terms.most_in_gutter;
       const double encoded = coding.encode(first_[i]);
       lower_[i] = coding.decode(std::max(0.0, encoded - reach));
       upper_[i] = coding.decode(std::min(1.0, encoded + reach));
@@ -206,8 +218,10 @@ class Channel {
   }
 
   void join() {
-    assemble();
-    for (int round = 0; round < rounds && solve(round < releases); ++round) {
+    for (int pass = 0; pass < terms_.passes; ++pass) {
+      assemble();
+      for (int round = 0; round < rounds && solve(round < releases); ++round) {
+      }
     }
     for (Eigen::Index i = 0; i < value_.size(); ++i) {
       const Place& place = unknowns_.places()[i];
@@ -253,7 +267,7 @@ class Channel {
         else
           row.emplace_back(slot, weight);
       }
-    const double stiffness = agreement * coding_.slope(mean) * coding_.slope(mean);
+    const double stiffness = terms_.agreement * coding_.slope(mean) * coding_.slope(mean);
     for (const auto& [i, a] : row) {
       right_[i] -= stiffness * a * offset;
       for (const auto& [j, b] : row) entries.emplace_back(i, j, stiffness * a * b);
@@ -296,6 +310,7 @@ class Channel {
   std::span<const SeamTexture> textures_;
   int channel_;
   Coding coding_;
+  FitTerms terms_;
   Eigen::SparseMatrix<double> matrix_;
   Eigen::VectorXd right_, first_, value_, lower_, upper_;
   std::vector<char> held_;
@@ -324,7 +339,8 @@ std::vector<SeamSample> sample_seams(std::span<const Seam> seams, std::span<cons
   return result;
 }
 
-void join_seams(std::span<const Seam> seams, std::span<const SeamTexture> textures, Encoding encoding) {
+void join_seams(std::span<const Seam> seams, std::span<const SeamTexture> textures, Encoding encoding,
+                SeamFit fit) {
   if (encoding == Encoding::normal) return;
   const std::vector<Sample> samples = worth_joining(samples_along(seams, textures), textures, encoding);
   if (samples.empty()) return;
@@ -333,7 +349,8 @@ void join_seams(std::span<const Seam> seams, std::span<const SeamTexture> textur
     const bool writes = std::any_of(textures.begin(), textures.end(), [&](const SeamTexture& texture) {
       return texture.channels[static_cast<std::size_t>(channel)];
     });
-    if (writes) Channel(samples, unknowns, textures, channel, coding_of(encoding, channel)).join();
+    if (writes)
+      Channel(samples, unknowns, textures, channel, coding_of(encoding, channel), terms_of(fit)).join();
   }
 }
 

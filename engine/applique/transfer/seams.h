@@ -40,9 +40,17 @@ struct SeamSample {
 std::vector<SeamSample> sample_seams(std::span<const Seam> seams, std::span<const SeamTexture> textures,
                                      Encoding encoding);
 
+/// How much the image's detail may give way to agreement across a seam. To agree everywhere, two sides whose
+/// texels are out of step have to be smooth along the seam, which smears what crosses it.
+enum class SeamFit {
+  sharp,  ///< A texel changes by up to 3/255 where it shows, by up to 16/255 out in the gutter.
+  exact,  ///< By as much as it takes: both sides come within 2/255.
+};
+
 /// Brings what a bilinear filter shows on both sides of the seams together, by the smallest changes (least
-/// squares) of the texels near them that the decals have changed: by up to 3/255 where a texel shows, by up
-/// to 16/255 out in the gutter. Not for normals, whose two sides are in frames of their own.
-void join_seams(std::span<const Seam> seams, std::span<const SeamTexture> textures, Encoding encoding);
+/// squares) of the texels near them that the decals have changed. Not for normals, whose two sides are in
+/// frames of their own.
+void join_seams(std::span<const Seam> seams, std::span<const SeamTexture> textures, Encoding encoding,
+                SeamFit fit = SeamFit::sharp);
 
 }  // namespace applique
