@@ -120,6 +120,7 @@ class NodeOverlay {
   void add_vertex(std::uint32_t vertex, const Sources& sources, const Rig* rig) {
     const Vec3& position = mesh_->positions[vertex];
     const Vec3& normal = mesh_->normals[vertex];
+    const Vec3& direction = mesh_->directions[vertex];
     overlay.uvs.push_back(mesh_->uvs[vertex]);
     if (rig == nullptr) {
       overlay.positions.push_back(position);
@@ -129,17 +130,30 @@ class NodeOverlay {
     const Matrix4d inverse = add_influences(sources, *rig).inverse();
     const Matrix3d linear = inverse.topLeftCorner<3, 3>();
     if (rig->skin && linear.determinant() < 0) overlay.joints_mirror = true;
-    const double height = (linear * (mesh_->heights[vertex] * normal)).norm();
+    const double height = (linear * (mesh_->heights[vertex] * direction)).norm();
     // Normals go by the inverse transpose; from the scene back, that is the transpose of the matrix itself.
-    Vec3 unposed_normal = (linear.inverse().transpose() * normal).normalized();
+    const Matrix3d back = linear.inverse().transpose();
+    Vec3 unposed_direction = (back * direction).normalized();
     for (std::size_t t = 0; t < rig->turns.size(); ++t)
-      unposed_normal -= rig->rest_weights[t] * blend_vectors(rig->turns[t], sources);
-    unposed_normal.normalize();
+      unposed_direction -= rig->rest_weights[t] * blend_vectors(rig->turns[t], sources);
+    unposed_direction.normalize();
     Vec3 unposed = (inverse * position.homogeneous()).head<3>();
     for (std::size_t t = 0; t < overlay.targets.size(); ++t)
-      unposed -= weight_of(*rig, t) * add_target(t, sources, *rig, unposed_normal, height);
+      unposed -= weight_of(*rig, t) * add_target(t, sources, *rig, unposed_direction, height);
     overlay.positions.push_back(unposed);
-    overlay.normals.push_back(unposed_normal);
+    overlay.normals.push_back(without_targets((back * normal).normalized(), *rig));
+  }
+
+  /// The unit vector that the targets, as they are at rest, turn into the direction of `normal`; they have
+  /// just been added.
+  [[nodiscard]] Vec3 without_targets(const Vec3& normal, const Rig& rig) const {
+    Vec3 moved = Vec3::Zero();
+    for (std::size_t t = 0; t < overlay.targets.size(); ++t)
+      if (!overlay.targets[t].normals.empty()) moved += weight_of(rig, t) * overlay.targets[t].normals.back();
+    const double along = normal.dot(moved), square = along * along + 1 - moved.squaredNorm();
+    const double length = along + std::sqrt(std::max(square, 0.0));
+    if (square < 0 || length <= 0) return normal;  // No vector is.
+    return length * normal - moved;
   }
 
   static double weight_of(const Rig& rig, std::size_t target) {
@@ -167,14 +181,15 @@ class NodeOverlay {
     return matrix.value_or(rig.world);
   }
 
-  /// Returns how far the target moves the new vertex: with the surface, and with its normal.
-  Vec3 add_target(std::size_t t, const Sources& sources, const Rig& rig, const Vec3& normal, double height) {
+  /// Returns how far the target moves the new vertex: with the surface, and with what it is lifted by.
+  Vec3 add_target(std::size_t t, const Sources& sources, const Rig& rig, const Vec3& direction,
+                  double height) {
     MorphTarget& target = overlay.targets[t];
     Vec3 move = Vec3::Zero();
     if (t < rig.targets.size()) {
-      const Vec3 turned = normal + blend_vectors(rig.turns[t], sources);
+      const Vec3 turned = direction + blend_vectors(rig.turns[t], sources);
       move = blend_vectors(rig.targets[t].positions, sources);
-      if (turned.norm() > 0) move += height * (turned.normalized() - normal);
+      if (turned.norm() > 0) move += height * (turned.normalized() - direction);
       if (!rig.targets[t].normals.empty()) {
         target.normals.resize(target.positions.size(), Vec3::Zero());
         target.normals.push_back(blend_vectors(rig.targets[t].normals, sources));

@@ -28,7 +28,7 @@ struct TargetWork {
   BakeTarget target;
   Image texture;
   TextureReport report;
-  std::vector<Transfer> transfers;  ///< By BakeTarget::shares.
+  std::vector<BakeTransfer> transfers;  ///< By BakeTarget::shares.
 };
 
 std::string material_name(const Document& document, std::size_t material) {
@@ -137,7 +137,8 @@ void join_slot(const SlotSeams& slot, SeamFit fit) {
 Result<void> transfer_all(SolvedJob& job, std::vector<TargetWork>& works, GpuBaker& baker, BakedJob& baked,
                           const StageCallback& on_stage) {
   std::vector<DecalLayers> layers(job.decals.begin(), job.decals.end());
-  std::vector<std::vector<const Transfer*>> transfers(job.decals.size());  // One layer's, for the density.
+  std::vector<std::vector<const BakeTransfer*>> transfers(
+      job.decals.size());  // One layer's, for the density.
   for (TargetWork& work : works) {
     for (const BakeShare& share : work.target.shares)
       work.transfers.push_back(

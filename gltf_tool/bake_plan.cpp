@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 #include <set>
+#include <span>
 #include <utility>
 
 #include <fmt/format.h>
@@ -12,6 +13,7 @@
 #include "edit.h"
 #include "instances.h"
 #include "tangents.h"
+#include "uv_coverage.h"
 
 namespace applique {
 namespace {
@@ -74,6 +76,32 @@ class Surroundings {
   std::array<std::array<double, 2>, 2> range_ = {{{1e9, -1e9}, {1e9, -1e9}}};
 };
 
+/// Tells which triangles show for the most part what a transfer's faces do: stacked or mirrored ones.
+class Copies {
+ public:
+  Copies(const Transfer& transfer, int width, int height)
+      : size_({static_cast<double>(width), static_cast<double>(height)}),
+        coverage_(width, height, transfer.wrap_u, transfer.wrap_v) {
+    for (int twice = 0; twice < 2; ++twice)  // So that each texel of a face counts as shared.
+      for (const TransferFace& face : transfer.faces) coverage_.add(in_texture(face.texel));
+  }
+
+  [[nodiscard]] bool has(const std::array<Texel, 3>& corners) const {
+    const UvCoverage::Count count = coverage_.under(in_texture(corners));
+    return 2 * count.shared > count.covered;
+  }
+
+ private:
+  [[nodiscard]] UvCoverage::Triangle in_texture(const std::array<Texel, 3>& texel) const {
+    UvCoverage::Triangle uvs = {};
+    for (std::size_t k = 0; k < 3; ++k) uvs[k] = {texel[k][0] / size_[0], texel[k][1] / size_[1]};
+    return uvs;
+  }
+
+  std::array<double, 2> size_;
+  UvCoverage coverage_;
+};
+
 /// A share of 1 as the image stores it.
 std::uint16_t stored(double value) {
   return static_cast<std::uint16_t>(257 * std::lround(255 * std::clamp(value, 0.0, 1.0)));
@@ -107,9 +135,9 @@ Result<void> check_uvs(const SolvedJob& job, const BakeTarget& target) {
 }
 
 /// Tells a face of a normal map how the image lies in the tangent frames of its corners.
-void turn_into_tangent_space(const ModelPart& part, const std::array<std::uint32_t, 3>& triangle,
-                             const std::array<Tangent, 3>& frames, const ImageFrame& frame,
-                             TransferFace& face) {
+void turn_into_tangent_space(const ModelPart& part, std::size_t index, const std::array<Tangent, 3>& frames,
+                             const ImageFrame& frame, TransferFace& face) {
+  const auto& triangle = part.triangles[index];
   const Vec3& origin = part.positions[triangle[0]];
   const Vec3 p1 = part.positions[triangle[1]] - origin, p2 = part.positions[triangle[2]] - origin;
   const std::array<Pixel, 3> q = {frame.to_pixel(face.image[0]), frame.to_pixel(face.image[1]),
@@ -120,7 +148,7 @@ void turn_into_tangent_space(const ModelPart& part, const std::array<std::uint32
   const Vec3 right = side * (y2 * p1 - y1 * p2), up = side * (x1 * p2 - x2 * p1);
   double turn = 0;
   for (std::size_t k = 0; k < 3; ++k) {
-    const Vec3& normal = part.normals[triangle[k]];
+    const Vec3 normal = shading_normal(part, index, k);
     const Vec3 tangent = (frames[k].direction - normal.dot(frames[k].direction) * normal).normalized();
     const Vec3 bitangent = frames[k].sign * normal.cross(tangent);
     const Vec2 along(right.dot(tangent), right.dot(bitangent)), across(up.dot(tangent), up.dot(bitangent));
@@ -128,6 +156,42 @@ void turn_into_tangent_space(const ModelPart& part, const std::array<std::uint32
     turn += cross(along, across);
   }
   face.reversed = turn < 0;
+}
+
+/// How a part's triangles lie in a slot's texture.
+class PartTexture {
+ public:
+  PartTexture(const Model& model, const ModelPart& part, MaterialSlot slot, const std::array<int, 2>& size)
+      : part_(&part), size_(size), uvs_(slot_uvs(model, part, slot)) {
+    if (encoding_of(slot) == Encoding::normal) frames_ = tangent_frames(part, uvs_);
+  }
+
+  [[nodiscard]] std::array<Texel, 3> corners(std::size_t triangle) const {
+    std::array<Texel, 3> texel = {};
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto& uv = uvs_[part_->triangles[triangle][k]];
+      texel[k] = {uv[0] * size_[0], uv[1] * size_[1]};
+    }
+    return texel;
+  }
+
+  /// Of a normal map.
+  void turn(std::size_t triangle, const ImageFrame& frame, TransferFace& face) const {
+    turn_into_tangent_space(*part_, triangle, frames_[triangle], frame, face);
+  }
+
+ private:
+  const ModelPart* part_;
+  std::array<int, 2> size_;
+  std::vector<std::array<double, 2>> uvs_;
+  std::vector<std::array<Tangent, 3>> frames_;
+};
+
+/// The part as it was, with the triangles last that were separated.
+ModelPart part_before(const Model& model, const FormerTriangles& former) {
+  ModelPart part = model.parts[former.part];
+  part.triangles.insert(part.triangles.end(), former.corners.begin(), former.corners.end());
+  return part;
 }
 
 /// What the factors of a material make of a slot without a texture, as the texture would store it.
@@ -149,6 +213,25 @@ std::array<int, 2> size_of_new(const SolvedJob& job, std::optional<std::size_t> 
       if (const auto size = document_image_size(job.model.document, *base)) return *size;
   }
   return {job.job.texture_size, job.job.texture_size};
+}
+
+/// A layer's share in a texture, but for its faces.
+BakeTransfer begin_transfer(const SolvedJob& job, const BakeTarget& target, const BakeShare& share) {
+  const SolvedDecal& decal = job.decals[share.decal];
+  const DecalLayer& layer = decal.job.layers[share.layer];
+  BakeTransfer transfer;
+  transfer.warp = &decal.map.warp;
+  transfer.opacity = decal.job.opacity * layer.opacity;
+  transfer.blend = layer.blend;
+  transfer.encoding = encoding_of(layer.slot);
+  transfer.channels = layer.channels;
+  transfer.gutter = job.job.gutter;
+  const MaterialTexture texture = texture_of(job.model, target);
+  transfer.wrap_u = texture.wrap_u;
+  transfer.wrap_v = texture.wrap_v;
+  if (target.material && target.slot == MaterialSlot::base_color)
+    transfer.opaque = job.model.materials[*target.material].alpha_mode == "OPAQUE";
+  return transfer;
 }
 
 }  // namespace
@@ -239,56 +322,21 @@ Image texture_of_factors(const SolvedJob& job, std::optional<std::size_t> materi
   return image;
 }
 
-Transfer lay_out_transfer(const SolvedJob& job, const BakeTarget& target, const BakeShare& share, int width,
-                          int height) {
+BakeTransfer lay_out_transfer(const SolvedJob& job, const BakeTarget& target, const BakeShare& share,
+                              int width, int height) {
   const SolvedDecal& decal = job.decals[share.decal];
-  const DecalLayer& layer = decal.job.layers[share.layer];
   const DecalMap& map = decal.map;
-  Transfer transfer;
-  transfer.warp = &map.warp;
-  transfer.opacity = decal.job.opacity * layer.opacity;
-  transfer.blend = layer.blend;
-  transfer.encoding = encoding_of(layer.slot);
-  transfer.channels = layer.channels;
-  transfer.gutter = job.job.gutter;
-  const MaterialTexture texture = texture_of(job.model, target);
-  transfer.wrap_u = texture.wrap_u;
-  transfer.wrap_v = texture.wrap_v;
-  if (target.material && target.slot == MaterialSlot::base_color)
-    transfer.opaque = job.model.materials[*target.material].alpha_mode == "OPAQUE";
-
-  std::map<std::uint32_t, std::vector<std::array<double, 2>>> uvs;  // by part
-  std::map<std::uint32_t, std::vector<std::array<Tangent, 3>>> frames;
-  const auto prepare_part = [&](std::uint32_t index) {
-    const auto [own_uvs, fresh] = uvs.try_emplace(index);
-    if (!fresh) return;
-    own_uvs->second = slot_uvs(job.model, job.model.parts[index], target.slot);
-    if (transfer.encoding == Encoding::normal)
-      frames[index] = tangent_frames(job.model.parts[index], own_uvs->second);
+  BakeTransfer transfer = begin_transfer(job, target, share);
+  const std::array<int, 2> size = {width, height};
+  std::map<std::uint32_t, PartTexture> textures;  // by part
+  const auto texture_on = [&](std::uint32_t part) -> const PartTexture& {
+    return textures.try_emplace(part, job.model, job.model.parts[part], target.slot, size).first->second;
   };
-  const auto texel_corners = [&](std::uint32_t part_index, std::uint32_t triangle) {
-    const ModelPart& part = job.model.parts[part_index];
-    const auto& part_uvs = uvs[part_index];
-    std::array<Texel, 3> texel = {};
-    for (std::size_t k = 0; k < 3; ++k) {
-      const auto& uv = part_uvs[part.triangles[triangle][k]];
-      texel[k] = {uv[0] * width, uv[1] * height};
-    }
-    return texel;
-  };
-
   std::map<std::uint32_t, std::vector<char>> own;  // by part: the triangles that carry the decal
-  for (const std::uint32_t part : target.parts) {
-    prepare_part(part);
-    own[part].resize(job.model.parts[part].triangles.size(), 0);
-  }
-  for_textured_faces(decal, [&](PatchFaceId f, const ModelSurface::Source& source) {
-    const auto part = part_that_shows(job.model, decal.job, target.parts, source.part);
-    if (!part) return;
-    own.at(*part)[source.triangle] = 1;
-    prepare_part(source.part);
+  for (const std::uint32_t part : target.parts) own[part].resize(job.model.parts[part].triangles.size(), 0);
+  const auto add_face = [&](PatchFaceId f, const PartTexture& texture, std::size_t triangle) {
     TransferFace face;
-    face.texel = texel_corners(source.part, source.triangle);
+    face.texel = texture.corners(triangle);
     for (std::size_t k = 0; k < 3; ++k) {
       const PatchVertexId vertex = map.patch.faces[f].vertices[k];
       face.plane[k] = map.plane[vertex];
@@ -297,32 +345,51 @@ Transfer lay_out_transfer(const SolvedJob& job, const BakeTarget& target, const 
       const auto influence = map.influence.begin() + std::ptrdiff_t{vertex.value} * map.groups;
       transfer.influence.insert(transfer.influence.end(), influence, influence + map.groups);
     }
-    if (transfer.encoding == Encoding::normal) {
-      const ModelPart& owner = job.model.parts[source.part];
-      turn_into_tangent_space(owner, owner.triangles[source.triangle], frames[source.part][source.triangle],
-                              decal.region.frame(), face);
-    }
+    if (transfer.encoding == Encoding::normal) texture.turn(triangle, decal.region.frame(), face);
     face.linear = map.linear[f] != 0;
     face.sheet = map.sheet[f];
     transfer.faces.push_back(face);
+  };
+  for_textured_faces(decal, [&](PatchFaceId f, const ModelSurface::Source& source) {
+    const auto part = part_that_shows(job.model, decal.job, target.parts, source.part);
+    if (!part) return;
+    own.at(*part)[source.triangle] = 1;
+    add_face(f, texture_on(source.part), source.triangle);
+  });
+  transfer.own = transfer.faces.size();
+  std::map<std::uint32_t, ModelPart> parts_before;  // by separated part
+  std::map<std::uint32_t, PartTexture> textures_before;
+  for_textured_faces(decal, [&](PatchFaceId f, const ModelSurface::Source& source) {
+    const auto part = former_part(job, decal.job, source.part);
+    if (!part || !part_that_shows(job.model, decal.job, target.parts, *part)) return;
+    auto texture = textures_before.find(source.part);
+    if (texture == textures_before.end()) {
+      ModelPart& before = parts_before[source.part];
+      before = part_before(job.model, job.former.at(source.part));
+      texture = textures_before.try_emplace(source.part, job.model, before, target.slot, size).first;
+    }
+    add_face(f, texture->second, job.model.parts[*part].triangles.size() + source.triangle);
   });
   const Surroundings surroundings(transfer, width, height);
+  std::optional<Copies> copies;
+  if (decal.job.uv_conflict == UvConflict::share) copies.emplace(transfer, width, height);
   for (const auto& [part, triangles] : own)
     for (std::uint32_t t = 0; t < triangles.size(); ++t) {
       if (triangles[t] != 0) continue;
-      const std::array<Texel, 3> corners = texel_corners(part, t);
-      if (surroundings.touch(corners)) transfer.foreign.push_back(corners);
+      const std::array<Texel, 3> corners = texture_on(part).corners(t);
+      if (!surroundings.touch(corners)) continue;
+      (copies && copies->has(corners) ? transfer.copies : transfer.foreign).push_back(corners);
     }
   return transfer;
 }
 
 std::optional<TexelDensity> texel_density(const SolvedDecal& decal,
-                                          const std::vector<const Transfer*>& transfers) {
+                                          const std::vector<const BakeTransfer*>& transfers) {
   const double pixels_per_unit = decal.region.frame().pixels_per_unit();
   double texels = 0;
   double pixels = 0;
-  for (const Transfer* transfer : transfers)
-    for (const TransferFace& face : transfer->faces) {
+  for (const BakeTransfer* transfer : transfers)
+    for (const TransferFace& face : std::span(transfer->faces).first(transfer->own)) {
       texels += area_of(face.texel[0], face.texel[1], face.texel[2]);
       pixels += 0.5 * std::abs(cross(face.image[1] - face.image[0], face.image[2] - face.image[0])) *
                 pixels_per_unit * pixels_per_unit;

@@ -55,14 +55,20 @@ Image texture_of_factors(const SolvedJob& job, std::optional<std::size_t> materi
 /// Whether the target's slot has an image.
 bool has_texture(const Model& model, const BakeTarget& target);
 
+/// What a decal puts into a texture.
+struct BakeTransfer : Transfer {
+  std::size_t own = 0;  ///< So many faces, the first, are the decal's; the others' place is left to other
+                        ///< triangles that share it (SolvedJob::former).
+};
+
 /// A layer's share in a texture of `width` x `height` texels. Its warp points into the decal; its image is
 /// left to the caller.
-Transfer lay_out_transfer(const SolvedJob& job, const BakeTarget& target, const BakeShare& share, int width,
-                          int height);
+BakeTransfer lay_out_transfer(const SolvedJob& job, const BakeTarget& target, const BakeShare& share,
+                              int width, int height);
 
 /// How finely the transfers resolve the decal: they share its faces out between the textures. None if it has
 /// none.
 std::optional<TexelDensity> texel_density(const SolvedDecal& decal,
-                                          const std::vector<const Transfer*>& transfers);
+                                          const std::vector<const BakeTransfer*>& transfers);
 
 }  // namespace applique

@@ -35,14 +35,18 @@ Layers layers_of(const SolvedJob& job) {
   Layers layers;
   for (std::size_t d = 0; d < job.decals.size(); ++d) {
     if (job.decals[d].job.output != DecalOutput::bake) continue;
-    for_textured_sources(job.decals[d], [&](const ModelSurface::Source& source) {
-      const ModelPart& part = job.model.parts[source.part];
+    const auto add = [&](std::uint32_t index) {
+      const ModelPart& part = job.model.parts[index];
       if (job.decals[d].job.instance == Instance::all) {
         layers.common[primitive_of(part)].insert(d);
       } else {
-        layers.own[source.part].insert(d);
+        layers.own[index].insert(d);
         layers.own_nodes.insert(part.node);
       }
+    };
+    for_textured_sources(job.decals[d], [&](const ModelSurface::Source& source) {
+      add(source.part);
+      if (const auto former = former_part(job, job.decals[d].job, source.part)) add(*former);
     });
   }
   return layers;
@@ -82,6 +86,12 @@ std::vector<TouchedPart> find_touched_parts(const SolvedJob& job) {
     if (is_shown_elsewhere(job, layers.own_nodes, primitive.first))
       touched.push_back({part, true, layers.common.at(primitive)});
   return touched;
+}
+
+std::optional<std::uint32_t> former_part(const SolvedJob& job, const DecalJob& decal, std::uint32_t part) {
+  const auto former = job.former.find(part);
+  if (former == job.former.end() || decal.uv_conflict != UvConflict::share) return std::nullopt;
+  return former->second.part;
 }
 
 std::optional<std::uint32_t> part_that_shows(const Model& model, const DecalJob& decal,

@@ -23,6 +23,10 @@ struct TouchedPart {
 /// lies on; nodes with decals of their own are listed one by one.
 std::vector<TouchedPart> find_touched_parts(const SolvedJob& job);
 
+/// Where a decal that shares its texels is to be seen too, for the others that show them: the part that the
+/// triangles of `part` were of before they were separated for another decal; none if it is not.
+std::optional<std::uint32_t> former_part(const SolvedJob& job, const DecalJob& decal, std::uint32_t part);
+
 /// Which of `parts` shows what a decal puts on the part `source`: that part itself or, for a decal for all
 /// instances, one of the same primitive.
 std::optional<std::uint32_t> part_that_shows(const Model& model, const DecalJob& decal,

@@ -159,7 +159,8 @@ class PartReader {
                    .tangents = {},
                    .triangles = {},
                    .tinted = {},
-                   .mirrored = false};
+                   .mirrored = false,
+                   .flat = !entry.attributes.contains("NORMAL")};
     part.material = index_of(document_.json["meshes"][mesh]["primitives"][primitive], "material");
     if (!entry.attributes.contains("POSITION")) return part;
     APPLIQUE_TRY(const auto positions, attribute(entry, "POSITION", 3, 0));
@@ -323,6 +324,15 @@ bool allowed(const std::vector<std::size_t>& list, std::optional<std::size_t> it
 }
 
 }  // namespace
+
+Vec3 shading_normal(const ModelPart& part, std::size_t triangle, std::size_t corner) {
+  const auto& t = part.triangles[triangle];
+  if (!part.flat) return part.normals[t[corner]];
+  const Vec3 &p = part.positions[t[0]], &q = part.positions[t[1]], &r = part.positions[t[2]];
+  const Vec3 normal = (q - p).cross(r - p);
+  const double length = normal.norm();
+  return length > 0 ? Vec3(normal / length) : part.normals[t[corner]];
+}
 
 std::vector<Vec3> smooth_normals(std::span<const Vec3> positions,
                                  std::span<const std::array<std::uint32_t, 3>> triangles) {

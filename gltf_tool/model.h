@@ -34,7 +34,7 @@ struct ModelPart {
   std::size_t primitive = 0;  ///< Index in the mesh.
   std::optional<std::size_t> material;
   std::vector<Vec3> positions;             ///< Scene space, one per glTF vertex.
-  std::vector<Vec3> normals;               ///< Unit; from the file or computed.
+  std::vector<Vec3> normals;               ///< Unit; from the file, or smooth ones where it has none.
   std::vector<std::array<double, 2>> uvs;  ///< Of the base-colour texture, KHR_texture_transform applied, in
                                            ///< texture space [0,1] before wrapping. Empty: no UVs.
   /// TEXCOORD_n as stored, by n: the sets of the material's other textures that do not use the base colour's.
@@ -44,8 +44,12 @@ struct ModelPart {
                                                         ///< winding seen from outside.
   std::vector<char> tinted;  ///< By vertex: its colour (COLOR_0) is not white. Empty: there are no colours.
   bool mirrored =
-      false;  ///< The node mirrors: corners 1 and 2 of each triangle are exchanged against the file.
+      false;          ///< The node mirrors: corners 1 and 2 of each triangle are exchanged against the file.
+  bool flat = false;  ///< The file has no normals: viewers show each triangle with its own.
 };
+
+/// The unit normal by which viewers shade a corner of a part's triangle.
+Vec3 shading_normal(const ModelPart& part, std::size_t triangle, std::size_t corner);
 
 /// How a material shows its base colour.
 struct ModelMaterial {

@@ -61,21 +61,14 @@ AlphaMode alpha_mode_of(const std::string& name) {
   return name == "BLEND" ? AlphaMode::blend : AlphaMode::opaque;
 }
 
-/// Whether the material is of an overlay with layers of metal or roughness.
-bool has_gloss_layer(const Document::Json& material) {
-  const auto* layers = find(material, {"extras", "applique", "layers"});
-  return layers != nullptr && layers->is_array() &&
-         std::any_of(layers->begin(), layers->end(), [](const auto& layer) {
-           return layer == "metallic" || layer == "roughness" || layer == "metallicRoughness";
-         });
-}
-
 RenderMesh mesh_of(const Model& model, const ModelPart& part, const std::map<std::size_t, Image>& images) {
   RenderMesh mesh;
   for (const Vec3& position : part.positions) mesh.positions.push_back(to_floats(position));
-  for (const Vec3& normal : part.normals) mesh.normals.push_back(to_floats(normal));
+  if (!part.flat)
+    for (const Vec3& normal : part.normals) mesh.normals.push_back(to_floats(normal));
   for (const auto& uv : part.uvs) mesh.uvs.push_back({static_cast<float>(uv[0]), static_cast<float>(uv[1])});
   mesh.triangles = part.triangles;
+  mesh.metallic = mesh.roughness = 1;  // glTF's defaults.
   if (!part.material) return mesh;
   const ModelMaterial& material = model.materials[*part.material];
   for (std::size_t c = 0; c < 4; ++c)
@@ -93,12 +86,8 @@ RenderMesh mesh_of(const Model& model, const ModelPart& part, const std::map<std
     const auto* value = find(json, path);
     return value != nullptr && value->is_number() ? value->get<float>() : 1.0F;
   };
-  // Without such a texture the factors say little: files leave them at metal. Those of an overlay's layers
-  // are meant.
-  if (mesh.metallic_roughness != nullptr || has_gloss_layer(json)) {
-    mesh.metallic = number({"pbrMetallicRoughness", "metallicFactor"});
-    mesh.roughness = number({"pbrMetallicRoughness", "roughnessFactor"});
-  }
+  mesh.metallic = number({"pbrMetallicRoughness", "metallicFactor"});
+  mesh.roughness = number({"pbrMetallicRoughness", "roughnessFactor"});
   mesh.normal_scale = number({"normalTexture", "scale"});
   if (const auto* factor = find(json, {"emissiveFactor"}))
     mesh.emissive_factor = factor->get<std::array<float, 3>>();

@@ -21,7 +21,8 @@ Camera camera_on_decal(const SolvedDecal& decal, PictureSize size);
 Camera camera_around_model(const Model& model, double azimuth, double elevation, double zoom,
                            PictureSize size);
 
-/// Renders the model with its base colours. Errors: device_failed, and those of load_model_image.
+/// Renders the model with its materials: base colour, metal and roughness, relief and glow. Errors:
+/// device_failed, and those of load_model_image.
 Result<Image> render_model(const Device& device, const Model& model, const Camera& camera, PictureSize size);
 
 }  // namespace applique

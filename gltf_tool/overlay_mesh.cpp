@@ -46,7 +46,7 @@ Origin origin_between(const Origin& a, const Origin& b, double t) {
 /// The growing mesh; the triangles are linear in the plane.
 struct Builder {
   std::vector<Vec3> positions;
-  std::vector<Vec3> normals;  ///< Any length.
+  std::vector<Vec3> directions;  ///< In which it is lifted; any length.
   std::vector<Vec2> plane;
   std::vector<Vec2> image;   ///< Plane units.
   std::vector<double> lift;  ///< Above the surface, in offsets.
@@ -62,7 +62,7 @@ struct Builder {
   /// A vertex on an edge, t of the way from a to b; its image is exact only after the caller set it.
   std::uint32_t add_between(std::uint32_t a, std::uint32_t b, double t) {
     positions.emplace_back((1 - t) * positions[a] + t * positions[b]);
-    normals.emplace_back((1 - t) * normals[a].normalized() + t * normals[b].normalized());
+    directions.emplace_back((1 - t) * directions[a].normalized() + t * directions[b].normalized());
     plane.push_back((1 - t) * plane[a] + t * plane[b]);
     image.push_back((1 - t) * image[a] + t * image[b]);
     lift.push_back((1 - t) * lift[a] + t * lift[b]);
@@ -95,7 +95,7 @@ Builder gather_faces(const Model& model, const SolvedDecal& decal) {
       if (index[vertex] == ~0U) {
         index[vertex] = static_cast<std::uint32_t>(mesh.positions.size());
         mesh.positions.push_back(corners[k]);
-        mesh.normals.emplace_back(Vec3::Zero());
+        mesh.directions.emplace_back(Vec3::Zero());
         mesh.plane.push_back(map.plane[vertex]);
         mesh.image.push_back(map.image[vertex]);
         mesh.lift.push_back(0);
@@ -105,7 +105,7 @@ Builder gather_faces(const Model& model, const SolvedDecal& decal) {
       }
       triangle[k] = index[vertex];
       mesh.lift[triangle[k]] = 1 + map.sheet[f];  // The highest comes last.
-      mesh.normals[triangle[k]] += area * part.normals[part.triangles[source.triangle][k]];
+      mesh.directions[triangle[k]] += area * part.normals[part.triangles[source.triangle][k]];
     }
     mesh.triangles.push_back({triangle, f});
   }
@@ -293,32 +293,70 @@ double plane_units(const SolvedDecal& decal, double max_deviation) {
   return margin * max_deviation / decal.region.frame().pixels_per_unit();
 }
 
-/// Without vertices that no triangle uses.
-DecalMesh compact(const Builder& mesh, const ImageFrame& frame, double offset) {
-  DecalMesh out;
-  std::vector<std::uint32_t> index(mesh.positions.size(), ~0U);
-  for (const Triangle& triangle : mesh.triangles) {
-    Corners renumbered = {};
-    for (std::size_t k = 0; k < 3; ++k) {
-      const std::uint32_t v = triangle[k];
-      if (index[v] == ~0U) {
-        index[v] = static_cast<std::uint32_t>(out.positions.size());
-        const double length = mesh.normals[v].norm();
-        const Vec3 normal = length > 0 ? Vec3(mesh.normals[v] / length) : Vec3::UnitZ();
-        const Pixel pixel = frame.to_pixel(mesh.image[v]);
-        out.positions.emplace_back(mesh.positions[v] + offset * mesh.lift[v] * normal);
-        out.normals.push_back(normal);
-        out.heights.push_back(offset * mesh.lift[v]);
-        out.origins.push_back(mesh.origins[v]);
-        out.uvs.push_back({pixel.x / frame.width, pixel.y / frame.height});
-      }
-      renumbered[k] = index[v];
-    }
-    out.triangles.push_back(renumbered);
-    out.faces.push_back(triangle.face);
+/// The normal of the surface under a vertex of a triangle.
+Vec3 normal_under(const Model& model, const SolvedDecal& decal, const Origin& origin, PatchFaceId face) {
+  const PatchFace& patch_face = decal.map.patch.faces[face];
+  const auto& source = decal.surface->source(patch_face.mesh_face);
+  Vec3 normal = Vec3::Zero();
+  for (std::size_t i = 0; i < 3; ++i) {  // In the origin's order: equal sums for all faces about it.
+    if (origin.weights[i] == 0) continue;
+    for (std::size_t k = 0; k < 3; ++k)
+      if (patch_face.vertices[k] == origin.vertices[i])
+        normal += origin.weights[i] * shading_normal(model.parts[source.part], source.triangle, k);
   }
-  return out;
+  const double length = normal.norm();
+  return length > 0 ? Vec3(normal / length) : Vec3(Vec3::UnitZ());
 }
+
+/// Without vertices that no triangle uses, and with one for each normal that the triangles about it have.
+class Compactor {
+ public:
+  Compactor(const Model& model, const SolvedDecal& decal, const Builder& mesh, double offset)
+      : model_(&model), decal_(&decal), mesh_(&mesh), offset_(offset) {}
+
+  DecalMesh run() {
+    for (const Triangle& triangle : mesh_->triangles) {
+      Corners renumbered = {};
+      for (std::size_t k = 0; k < 3; ++k) renumbered[k] = vertex_of(triangle[k], triangle.face);
+      out_.triangles.push_back(renumbered);
+      out_.faces.push_back(triangle.face);
+    }
+    return std::move(out_);
+  }
+
+ private:
+  /// Normals that a file would store as the same are.
+  using Key = std::pair<std::uint32_t, std::array<float, 3>>;
+
+  std::uint32_t vertex_of(std::uint32_t v, PatchFaceId face) {
+    const Vec3 normal = normal_under(*model_, *decal_, mesh_->origins[v], face);
+    const Eigen::Vector3f stored = normal.cast<float>();
+    const auto [found, fresh] = index_.try_emplace(Key(v, {stored.x(), stored.y(), stored.z()}),
+                                                   static_cast<std::uint32_t>(out_.positions.size()));
+    if (fresh) add_vertex(v, normal);
+    return found->second;
+  }
+
+  void add_vertex(std::uint32_t v, const Vec3& normal) {
+    const ImageFrame& frame = decal_->region.frame();
+    const double length = mesh_->directions[v].norm();
+    const Vec3 direction = length > 0 ? Vec3(mesh_->directions[v] / length) : Vec3::UnitZ();
+    const Pixel pixel = frame.to_pixel(mesh_->image[v]);
+    out_.positions.emplace_back(mesh_->positions[v] + offset_ * mesh_->lift[v] * direction);
+    out_.normals.push_back(normal);
+    out_.directions.push_back(direction);
+    out_.heights.push_back(offset_ * mesh_->lift[v]);
+    out_.origins.push_back(mesh_->origins[v]);
+    out_.uvs.push_back({pixel.x / frame.width, pixel.y / frame.height});
+  }
+
+  const Model* model_;
+  const SolvedDecal* decal_;
+  const Builder* mesh_;
+  double offset_;
+  std::map<Key, std::uint32_t> index_;
+  DecalMesh out_;
+};
 
 }  // namespace
 
@@ -327,11 +365,11 @@ DecalMesh build_overlay_mesh(const Model& model, const SolvedDecal& decal, doubl
   Builder mesh = gather_faces(model, decal);
   Divider(mesh, decal.map.warp, plane_units(decal, max_deviation)).run();
   cut_at_image_border(mesh, decal.region.frame());
-  return compact(mesh, decal.region.frame(), offset);
+  return Compactor(model, decal, mesh, offset).run();
 }
 
 DecalMesh build_whole_mesh(const Model& model, const SolvedDecal& decal, double offset) {
-  return compact(gather_faces(model, decal), decal.region.frame(), offset);
+  return Compactor(model, decal, gather_faces(model, decal), offset).run();
 }
 
 bool is_linear(const Model& model, const SolvedDecal& decal, double max_deviation) {

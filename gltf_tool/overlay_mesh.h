@@ -18,9 +18,10 @@ struct DecalMesh {
   };
 
   std::vector<Vec3> positions;
-  std::vector<Vec3> normals;               ///< Unit.
+  std::vector<Vec3> normals;               ///< Unit: the surface's, as viewers shade it.
+  std::vector<Vec3> directions;            ///< Unit: in which it lies above the surface; one at each place.
   std::vector<std::array<double, 2>> uvs;  ///< Image pixels divided by the image's size: [0, 1], v down.
-  std::vector<double> heights;             ///< Above the surface, along the normal, scene units.
+  std::vector<double> heights;             ///< Above the surface, scene units.
   std::vector<Origin> origins;
   std::vector<std::array<std::uint32_t, 3>> triangles;  ///< Counter-clockwise seen from outside.
   std::vector<PatchFaceId> faces;                       ///< By triangle: the patch face that it is a part of.
@@ -29,7 +30,9 @@ struct DecalMesh {
 /// Lays the decal's faces out as a mesh: those that meet the region, divided until the linear texture
 /// coordinates of every triangle lie within `max_deviation` pixels of the exact map (edges are divided for
 /// both their faces at once, so no crack opens), cut at the image's border, and moved by `offset` (scene
-/// units, >= 0) along the normal, which is the area-weighted mean of the model's normals at a vertex.
+/// units, >= 0) along the area-weighted mean of the model's normals at a vertex: so nothing tears where the
+/// model has an edge. There the mesh has several vertices at one place, each with the normal of the surface
+/// under its triangles.
 ///
 /// Where the region overlaps itself, sheet after sheet follows from the bottom up, and each lies one more
 /// `offset` above the surface. Where faces of several sheets meet, their vertices go with the highest, so

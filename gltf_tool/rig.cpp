@@ -33,6 +33,7 @@ Result<Rig> read_rig(const Document& document, const tinygltf::Model& geometry,
   const std::size_t targets = geometry.meshes[part.mesh].primitives[part.primitive].targets.size();
   for (std::size_t t = 0; t < targets; ++t) {
     APPLIQUE_TRY(MorphTarget target, read_morph_target(document, geometry, key, t));
+    if (part.flat) target.normals.clear();  // There is nothing that they would move.
     rig.turns.emplace_back();
     if (!target.positions.empty()) {
       APPLIQUE_TRY(rig.turns.back(), read_turns(document, geometry, part, target));

@@ -111,9 +111,17 @@ class Separation {
     for (std::uint32_t p = 0; p < job_.model.parts.size(); ++p)
       index[{job_.model.parts[p].node, job_.model.parts[p].primitive}] = p;
     follow(old_parts, index);
-    for (std::uint32_t p = 0; p < old_parts.size(); ++p)
-      if (const PartMove* move = move_of(old_parts, p))
-        done_.parts.push_back(index.at({old_parts[p].node, move->primitive}));
+    for (std::uint32_t p = 0; p < old_parts.size(); ++p) {
+      const PartMove* move = move_of(old_parts, p);
+      if (move == nullptr) continue;
+      const ModelPart& old = old_parts[p];
+      const std::uint32_t part = index.at({old.node, move->primitive});
+      done_.parts.push_back(part);
+      if (move->primitive == old.primitive) continue;  // Nothing is left.
+      FormerTriangles& former = job_.former[part];
+      former.part = index.at({old.node, old.primitive});
+      for (const std::uint32_t t : move->triangles) former.corners.push_back(old.triangles[t]);
+    }
     std::sort(done_.parts.begin(), done_.parts.end());
     return std::move(done_);
   }

@@ -1,6 +1,9 @@
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -33,10 +36,17 @@ struct SolvedDecal {
   std::vector<Warning> warnings;
 };
 
+/// Where the triangles of a part were before they got texture space of their own.
+struct FormerTriangles {
+  std::uint32_t part = 0;                             ///< The part that they were of, which kept the others.
+  std::vector<std::array<std::uint32_t, 3>> corners;  ///< By triangle: vertices of that part, which has them.
+};
+
 struct SolvedJob {
   Job job;
   Model model;
-  std::vector<SolvedDecal> decals;  ///< In the order of the job.
+  std::vector<SolvedDecal> decals;                  ///< In the order of the job.
+  std::map<std::uint32_t, FormerTriangles> former;  ///< By part; see separate_uvs.
   StageTimes times;
 };
 

@@ -48,19 +48,20 @@ std::vector<std::array<Tangent, 3>> tangent_frames(const ModelPart& part,
   }
 
   using Key = std::tuple<std::array<double, 3>, std::array<double, 3>, std::array<double, 2>, bool>;
-  const auto key = [&](std::uint32_t vertex, bool mirrored) {
-    const Vec3 &p = part.positions[vertex], &n = part.normals[vertex];
+  const auto key = [&](std::uint32_t vertex, const Vec3& n, bool mirrored) {
+    const Vec3& p = part.positions[vertex];
     return Key({p.x(), p.y(), p.z()}, {n.x(), n.y(), n.z()}, uvs[vertex], mirrored);
   };
   std::map<Key, Vec3> sums;
-  for (const auto& t : part.triangles) {
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    const auto& t = part.triangles[i];
     const UvDirection direction = uv_direction(part, uvs, t);
     for (std::size_t k = 0; k < 3; ++k) {
-      const Vec3& normal = part.normals[t[k]];
+      const Vec3 normal = shading_normal(part, i, k);
       const Vec3 next = in_tangent_plane(part.positions[t[(k + 1) % 3]] - part.positions[t[k]], normal);
       const Vec3 last = in_tangent_plane(part.positions[t[(k + 2) % 3]] - part.positions[t[k]], normal);
       const double angle = std::acos(std::clamp(next.dot(last), -1.0, 1.0));
-      sums.try_emplace(key(t[k], direction.mirrored), Vec3::Zero()).first->second +=
+      sums.try_emplace(key(t[k], normal, direction.mirrored), Vec3::Zero()).first->second +=
           angle * in_tangent_plane(direction.along_u, normal);
     }
   }
@@ -68,8 +69,8 @@ std::vector<std::array<Tangent, 3>> tangent_frames(const ModelPart& part,
     const bool mirrored = uv_direction(part, uvs, part.triangles[t]).mirrored;
     for (std::size_t k = 0; k < 3; ++k) {
       const std::uint32_t vertex = part.triangles[t][k];
-      const Vec3& normal = part.normals[vertex];
-      const Vec3 along = in_tangent_plane(sums.at(key(vertex, mirrored)), normal);
+      const Vec3 normal = shading_normal(part, t, k);
+      const Vec3 along = in_tangent_plane(sums.at(key(vertex, normal, mirrored)), normal);
       frames[t][k] = {along.isZero() ? any_tangent(normal) : along, mirrored ? -1.0 : 1.0};
     }
   }

@@ -39,9 +39,10 @@ void main() {
 
   vec3 view = normalize(frame.eye.xyz - world_position);
   vec3 n = world_normal;
-  if (dot(n, n) < 1e-12) n = cross(dFdx(world_position), dFdy(world_position));
+  bool flat_face = dot(n, n) < 1e-12;
+  if (flat_face) n = cross(dFdx(world_position), dFdy(world_position));
   n = normalize(n);
-  if (!gl_FrontFacing) n = -n;
+  if (flat_face ? dot(n, view) < 0.0 : !gl_FrontFacing) n = -n;
   if (draw.normal_scale > 0.0) n = with_relief(n);
 
   vec2 material = texture(metallic_roughness, texture_place).bg * vec2(draw.metallic, draw.roughness);
@@ -58,9 +59,11 @@ void main() {
   float edge = pow(1.0 - facing, 3.0) * wrapped(n, frame.rim.xyz, 0.1);
   vec3 specular = vec3(0.10 * gloss + 0.22 * edge) + vec3(0.12, 0.125, 0.13) * fresnel * sky;
 
-  // Metals show their surroundings, here the sky and the ground, in their own colour.
+  // Metals show their surroundings, here the sky and the ground, in their own colour: the rougher, the wider spread,
+  // in the end as matt surfaces do.
   float mirrored = smoothstep(-0.2 - 0.6 * rough, 0.2 + 0.6 * rough, dot(reflect(-view, n), frame.up.xyz));
   vec3 around = mix(vec3(0.18, 0.17, 0.16), vec3(0.85, 0.88, 0.92), mirrored) + 0.8 * gloss;
+  around = mix(around, diffuse, rough * rough);
   vec3 lit = mix(base.rgb * diffuse + specular, base.rgb * around + 0.1 * specular, metal);
   lit += draw.emissive.rgb * texture(emissive, texture_place).rgb;
 

@@ -20,7 +20,9 @@ void main() {
   if (any(greaterThanEqual(texel, constants.region_size))) return;
   uint index = uint(texel.y * constants.region_size.x + texel.x);
   uint key = jobs[job].key;
-  if ((key & key_mask) == 0u) {
+  if (key == copy_key) {
+    if ((atomicOr(region[index], 0u) & key_mask) != 0u) atomicOr(region[index], foreign_bit);
+  } else if ((key & key_mask) == 0u) {
     atomicOr(region[index], key);
   } else {
     atomicMax(region[index], key);

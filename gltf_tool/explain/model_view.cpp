@@ -46,7 +46,8 @@ std::vector<RenderMesh> tinted_parts(const Model& model, const SolvedDecal& deca
     const ModelPart& part = model.parts[p];
     RenderMesh mesh;
     for (const Vec3& position : part.positions) mesh.positions.push_back(to_floats(position));
-    for (const Vec3& normal : part.normals) mesh.normals.push_back(to_floats(normal));
+    if (!part.flat)
+      for (const Vec3& normal : part.normals) mesh.normals.push_back(to_floats(normal));
     mesh.double_sided = true;
     for (std::size_t t = 0; t <= tints.size(); ++t) {
       mesh.triangles.clear();

@@ -1,5 +1,6 @@
 // Decals with material: what is baked into the other textures than the base colour.
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <numbers>
@@ -11,6 +12,7 @@
 #include "cli/small_model.h"
 #include "material.h"
 #include "model.h"
+#include "save_document.h"
 
 using namespace applique;
 using nlohmann::json;
@@ -237,6 +239,44 @@ TEST_F(LayersTest, WhatIsNotSeenIsWarnedOf) {
   EXPECT_EQ(warnings()[0]["message"],
             "decal 'crest': nothing of it is seen, because its base colour's \"opacity\" is 0")
       << "of an overlay, by whose base colour all is seen";
+}
+
+/// The most that two pictures differ, of 255.
+double difference(const Image& a, const Image& b) {
+  double largest = a.rgba.size() == b.rgba.size() ? 0 : 255;
+  for (std::size_t i = 0; i < std::min(a.rgba.size(), b.rgba.size()); ++i)
+    largest = std::max(largest, std::abs(double(a.rgba[i]) - b.rgba[i]) / 257);
+  return largest;
+}
+
+TEST_F(LayersTest, WhatTheFactorsSayAlreadyIsNotSeen) {
+  const auto picture = [&](const std::string& model) {
+    const CommandResult result =
+        folder_.run("render " + model + " -o picture.png --azimuth 30 --elevation 20");
+    EXPECT_EQ(result.status, 0) << result.err;
+    return read_image(folder_ / "picture.png").value();
+  };
+  std::vector<Image> seen;
+  // Multiples of 1/255, which a texture stores exactly; none: glTF's defaults.
+  for (const auto& [metallic, roughness] : {std::pair<json, json>{0, 0.4}, {0.6, 0.2}, {json(), json()}}) {
+    SCOPED_TRACE(metallic.dump() + ", " + roughness.dump());
+    write_model({}, plain_image({0.6, 0.4, 0.2}));
+    Document document = load_document(folder_ / "model.glb").value();
+    auto& pbr = document.json["materials"][0]["pbrMetallicRoughness"];
+    pbr.erase("metallicFactor");
+    if (!metallic.is_null()) pbr.update({{"metallicFactor", metallic}, {"roughnessFactor", roughness}});
+    ASSERT_TRUE(save_document(document, folder_ / "model.glb"));
+    seen.push_back(picture("model.glb"));
+    ASSERT_TRUE(bake(job({{"baseColor", false},
+                          {"metallic", metallic.is_null() ? json(1.0) : metallic},
+                          {"roughness", roughness.is_null() ? json(1.0) : roughness}})));
+    EXPECT_LE(difference(seen.back(), picture("out.glb")), 1);
+    const double other = metallic == json(0) ? 1 : 0;
+    ASSERT_TRUE(bake(job({{"baseColor", false}, {"metallic", other}, {"roughness", 0.2}})));
+    EXPECT_GT(difference(seen.back(), picture("out.glb")), 10) << "others are seen";
+  }
+  EXPECT_GT(difference(seen[0], seen[1]), 10);
+  EXPECT_GT(difference(seen[1], seen[2]), 10);
 }
 
 TEST_F(LayersTest, WrongLayersAreNamed) {

@@ -272,6 +272,58 @@ TEST_F(UvConflictTest, SharePutsItOnEveryFace) {
   EXPECT_TRUE(is_red(colour_near(load("out.glb"), {0, 0, -1})));
 }
 
+TEST_F(UvConflictTest, SharesUpToTheBordersOfIslands) {
+  // Stacked islands, of which one is a little larger.
+  SmallMesh front = make_plane("Front", 8), back = make_plane("Back", 8, 0, -1);
+  for (auto& uv : front.uvs)
+    for (double& x : uv) x = 0.5 + 0.8 * (x - 0.5);
+  for (auto& uv : back.uvs)
+    for (double& x : uv) x = 0.5 + 0.82 * (x - 0.5);
+  for (const auto& t : back.triangles) front.triangles.push_back({t[0] + 81, t[1] + 81, t[2] + 81});
+  front.positions.insert(front.positions.end(), back.positions.begin(), back.positions.end());
+  front.uvs.insert(front.uvs.end(), back.uvs.begin(), back.uvs.end());
+  write_model({front});
+  json job = job_at(0.7, 0);
+  job["decals"][0].update({{"uv_conflict", "share"}});
+  bake(job);
+  const Model after = load("out.glb");
+  for (const double y : {-0.4, -0.1, 0.05, 0.3}) {
+    EXPECT_TRUE(is_red(colour_near(after, {0.999, y, 0}))) << y;
+    EXPECT_TRUE(is_red(colour_near(after, {0.999, y, -1}))) << y;
+    EXPECT_FALSE(is_red(colour_near(after, {0.1, y, -1}))) << y;
+  }
+}
+
+TEST_F(UvConflictTest, SharesBesideADecalThatIsSeparated) {
+  write_model({make_mirrored_wall()});
+  write_png(folder_ / "blue.png", make_image(image_size, image_size, {0, 0, 0xffff, 0xffff}));
+  json job = job_at(-1.5, 0);
+  json shared = job_at(-1, 0.05)["decals"][0];
+  job["decals"][0].update({{"name", "own"}, {"image", "blue.png"}, {"size", 0.4}});
+  shared.update({{"uv_conflict", "share"}, {"size", 0.8}});
+  job["decals"].push_back(shared);
+  const json report = bake(job);
+  EXPECT_EQ(report["textures"].size(), 2u);
+  const Model before = load("model.glb"), after = load("out.glb");
+  // Across the cut, which runs along the squares' sides and diagonals, and on what shares the texels.
+  for (const double y : {-0.3, -0.251, -0.12, -0.01, 0.002, 0.127, 0.248, 0.252, 0.4})
+    for (const double x : {-1.35, -1.24, -1.13, -1.01, -1.003, -0.998, -0.99, -0.85, -0.65})
+      for (const double side : {1, -1}) {
+        const auto colour = colour_near(after, {side * x, y, 0});
+        EXPECT_TRUE(is_red(colour)) << side * x << ", " << y << ": " << colour[0] << ' ' << colour[1];
+      }
+  EXPECT_GT(colour_near(after, {-1.6, 0, 0})[2], 253);
+  const auto other = colour_near(after, {1.6, 0, 0}), old = colour_near(before, {1.6, 0, 0});
+  for (std::size_t c = 0; c < 4; ++c) EXPECT_NEAR(other[c], old[c], 1e-9);
+  expect_valid("out.glb");
+  // Nothing of it lies on triangles that are not separated: all the same the others show it.
+  job["decals"][1]["size"] = 0.2;
+  job["decals"][1]["features"][0]["ray"]["origin"] = {-1.5, 0, 20};
+  bake(job);
+  EXPECT_TRUE(is_red(colour_near(load("out.glb"), {1.5, 0.05, 0})));
+  EXPECT_TRUE(is_red(colour_near(load("out.glb"), {-1.5, 0.05, 0})));
+}
+
 TEST_F(UvConflictTest, LeavesAModelWithoutConflictAlone) {
   write_model({make_plane("Wall", 8)});
   const json report = bake(job_at(0, 0));

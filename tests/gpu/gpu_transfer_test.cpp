@@ -319,6 +319,21 @@ TEST_F(GpuTransferTest, ForeignTrianglesKeepTheirTexels) {
   EXPECT_EQ(outcome.shared_texels, shared);
 }
 
+TEST_F(GpuTransferTest, CopiesShareTheFacesTexelsOnly) {
+  GpuTransfer gpu = GpuTransfer::create(device()).value();
+  const Image texture = noise_texture(5, 256, 256);
+  SyntheticTransfer synthetic = synthetic_transfer(6, {});
+  Image plain = texture, copied = texture;
+  ASSERT_TRUE(gpu.run(synthetic.transfer, plain));
+  synthetic.transfer.copies = {{{{0, 210}, {256, 210}, {256, 256}}}, {{{0, 210}, {256, 256}, {0, 256}}}};
+  expect_agreement(compare(gpu, synthetic.transfer, texture));
+  EXPECT_GT(gpu.run(synthetic.transfer, copied).value().shared_texels, 100U);
+  EXPECT_EQ(plain.rgba, copied.rgba);
+  // What is foreign besides keeps its texels.
+  synthetic.transfer.foreign = synthetic.transfer.copies;
+  expect_agreement(compare(gpu, synthetic.transfer, texture));
+}
+
 TEST_F(GpuTransferTest, GreyTexturesTakeColour) {
   GpuTransfer gpu = GpuTransfer::create(device()).value();
   Image texture = make_image(256, 256, {30000 / 257 * 257, 30000 / 257 * 257, 30000 / 257 * 257, 65535});

@@ -133,6 +133,21 @@ TEST_F(RendererTest, ShowsBackFacesOnlyOfDoubleSidedMeshes) {
   EXPECT_NEAR(back.pixel(100, 100)[0], face.pixel(100, 100)[0], 600);
 }
 
+TEST_F(RendererTest, LightsWithoutNormalsAsWithTheFacesOwn) {
+  RenderMesh mesh = square(nullptr);
+  mesh.double_sided = true;
+  mesh.base_colour_factor = {0.4F, 0.4F, 0.4F, 1};
+  RenderMesh flat = mesh;
+  flat.normals.clear();
+  for (const double azimuth : {40.0, 140.0}) {
+    const Camera camera = orbit({0, 0, 0}, 1.2, azimuth, 30, 1);
+    const Image expected = render(device(), std::vector{mesh}, camera, small).value();
+    const Image picture = render(device(), std::vector{flat}, camera, small).value();
+    for (int c = 0; c < 3; ++c)
+      EXPECT_NEAR(picture.pixel(100, 100)[c], expected.pixel(100, 100)[c], 257) << azimuth;
+  }
+}
+
 TEST_F(RendererTest, BlendsAfterOpaqueAndCutsMasks) {
   // Given in the wrong order: the blended square is drawn last all the same.
   std::vector<RenderMesh> meshes = {coloured_square({0, 1, 0, 0.5F}, 0.1F), coloured_square({1, 0, 0, 1}, 0)};

@@ -403,6 +403,17 @@ TEST(TransferOnCpu, SheetsAreNotUvOverlapButForeignSurfaceIs) {
   EXPECT_EQ(texture.pixel(10, 25)[2], full);         // No gutter over it.
 }
 
+TEST(TransferOnCpu, CopiesAreUvOverlapButKeepNoGutterOut) {
+  StackedSheets plain, copied;
+  copied.transfer.copies = {{{{8, 20}, {24, 20}, {24, 30}}}, {{{8, 20}, {24, 30}, {8, 30}}}};
+  Image without = make_image(32, 32, {0, 0, full, full}), with = without;
+  const TransferResult result = transfer_on_cpu(plain.transfer, without);
+  EXPECT_EQ(result.shared_texels, 0U);
+  EXPECT_EQ(transfer_on_cpu(copied.transfer, with).shared_texels, 4U * 16 + 4 * 8);
+  EXPECT_EQ(without.pixel(10, 25)[2], 0);  // The gutter.
+  EXPECT_EQ(with.rgba, without.rgba);
+}
+
 TEST(TransferOnCpu, TheUpperSheetWinsWhateverTheOrder) {
   const DecalImage image = make_decal(64, 64, [](int x, int) {
     return x < 32 ? std::array<float, 4>{1, 0, 0, 1} : std::array<float, 4>{0, 1, 0, 1};

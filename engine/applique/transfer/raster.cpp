@@ -419,6 +419,7 @@ TilePlan plan_tile(const Transfer& transfer, int width, int height, const TexelR
                   });
   };
   for (const auto& corners : transfer.foreign) mark(corners, shader::foreign_bit);
+  for (const auto& corners : transfer.copies) mark(corners, shader::copy_key);
   // What does not show the image keeps others' gutters out all the same.
   for (const TransferFace& face : transfer.faces)
     if (face.sheet != sheet || is_clipped(transfer, face)) mark(face.texel, shader::sheet_bit);

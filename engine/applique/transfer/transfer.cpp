@@ -37,7 +37,10 @@ void cover(const std::vector<shader::RasterJob>& jobs, Ownership& ownership) {
         if (!inside) continue;
         std::uint32_t& owner =
             ownership.owner[static_cast<std::size_t>(y0 + y) * ownership.region.width + x0 + x];
-        owner = (job.key & shader::key_mask) == 0 ? owner | job.key : std::max(owner, job.key);
+        if (job.key == shader::copy_key)
+          owner |= (owner & shader::key_mask) != 0 ? shader::foreign_bit : 0;
+        else
+          owner = (job.key & shader::key_mask) == 0 ? owner | job.key : std::max(owner, job.key);
       }
     }
   }

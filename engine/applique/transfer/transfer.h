@@ -64,6 +64,8 @@ struct TransferFace {
 struct Transfer {
   std::vector<TransferFace> faces;
   std::vector<std::array<Texel, 3>> foreign;  ///< UV triangles that use the texture and are not in `faces`.
+  /// The same, of triangles that are to show what the faces' texels show: they keep no gutter out.
+  std::vector<std::array<Texel, 3>> copies;
   const Warp* warp = nullptr;
   /// By face, corner and group of the warp, [(3 * face + corner) * groups + group]: what the warp is to be
   /// told at a place in the face, interpolated linearly. Empty when the warp has one group.
