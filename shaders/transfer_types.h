@@ -1,5 +1,5 @@
-// What the transfer's shaders and the C++ side share. Included by both: the layouts agree because they are
-// one. All rectangles are in texels of a tile's region: the part of the texture's plane that a tile sees.
+// What the transfer's shaders and the C++ side share. Included by both: the layouts agree because they are one.
+// All rectangles are in texels of a tile's region: the part of the texture's plane that a tile sees.
 #ifndef APPLIQUE_TRANSFER_TYPES_H
 #define APPLIQUE_TRANSFER_TYPES_H
 
@@ -25,18 +25,14 @@ APPLIQUE_CONST uint sheet_bit = 0x40000000u;    // Owner: another sheet of the d
 APPLIQUE_CONST uint key_mask = 0x3fffffffu;     // Owner: 1 + the placement, 0 for none.
 APPLIQUE_CONST uint copy_key = 0xc0000000u;     // A job's: foreign, but only to texels that faces own.
 APPLIQUE_CONST uint max_levels = 24u;
-APPLIQUE_CONST uint warp_table_capacity =
-    992u;  // vec4s; with the levels just under the 16 KiB of every device.
+APPLIQUE_CONST uint warp_table_capacity = 992u;  // vec4s; with the levels just under the 16 KiB of every device.
 
-// `value` is a plane point that the warp carries to the image or, where features have groups, a place in a
-// grid of one cell, with the plane points of its corners and then, for every two groups, their influence at
-// the corners.
+// `value` is a plane point that the warp carries to the image or, where features have groups, a place in a grid of one
+// cell, with the plane points of its corners and then, for every two groups, their influence at the corners.
 APPLIQUE_CONST uint face_warped = 1u;
 APPLIQUE_CONST uint face_clamped = 2u;  // Too thin to extend: its gutter repeats its nearest texel.
-APPLIQUE_CONST uint face_cells =
-    4u;  // Times the cells along a side of a refined face: `value` is a place in its grid.
-APPLIQUE_CONST uint face_reversed =
-    0x80000000u;  // The texture's tangent frame is left-handed against the image's.
+APPLIQUE_CONST uint face_cells = 4u;    // Times the cells along a side of a refined face: `value` is a place in its grid.
+APPLIQUE_CONST uint face_reversed = 0x80000000u;  // The texture's tangent frame is left-handed against the image's.
 
 // Encoding.
 APPLIQUE_CONST uint encoding_colour = 0u;
@@ -58,8 +54,8 @@ struct RasterJob {
   uint y;
 };
 
-// Where a face takes the texels: value + dx * (x - texel.x) + dy * (y - texel.y), in pixels relative to
-// `pixel` or, where warped, in the plane, or, where it has a grid, in steps of that.
+// Where a face takes the texels: value + dx * (x - texel.x) + dy * (y - texel.y), in pixels relative to `pixel` or,
+// where warped, in the plane, or, where it has a grid, in steps of that.
 struct FaceMap {
   ivec2 texel;
   ivec2 pixel;
@@ -71,8 +67,7 @@ struct FaceMap {
   uvec2 probes;  // Along each.
   uint level;
   uint flags;
-  uint first_point;  // Of the grid, where there is one. For normals, before it: a direction and its change by
-                     // texel.
+  uint first_point;  // Of the grid, where there is one. For normals, before it: a direction and its change by texel.
   uint padding;
 };
 
@@ -83,8 +78,8 @@ struct TransferConstants {
   int gutter;
   uint first;  // Job or block of the first workgroup.
   float opacity;
-  uint blend;   // BlendMode.
-  uint opaque;  // Whether the texture's alpha does not show.
+  uint blend;       // BlendMode.
+  uint opaque;      // Whether the texture's alpha does not show.
   uint encoding;
   uint channels;    // Bit by channel: which are written.
   float max_value;  // 255 or 65535.
@@ -92,10 +87,9 @@ struct TransferConstants {
   uint steps;
   uint features;
   uint pairs;
-  vec2 half_size;        // Of the image, pixels.
+  vec2 half_size;  // Of the image, pixels.
   vec2 pixels_per_unit;  // To the right and downwards, of the plane's x and y.
-  uint
-      piece_first;  // The decal's texels that are bound: what they give is added to what earlier pieces gave.
+  uint piece_first;  // The decal's texels that are bound: what they give is added to what earlier pieces gave.
   uint piece_size;
   uint piece_flags;
   uint plan_faces;  // Where they begin in the plan, in uvec4s.
