@@ -35,7 +35,7 @@ struct Case {
   const char* name;
   const char* file;
   double larger;                 ///< Times the size that would fit on the model's largest smooth piece.
-  std::vector<double> position;  ///< There instead, if given.
+  std::vector<double> position;  ///< There instead, if given, the image upright.
 };
 
 void PrintTo(const Case& item, std::ostream* out) {
@@ -50,7 +50,10 @@ class Posed : public testing::TestWithParam<Case> {
     const Model model = load_model(path).value();
     DecalPlace place = find_place(model);
     place.size *= GetParam().larger;
-    if (const auto& p = GetParam().position; !p.empty()) place.position = {p[0], p[1], p[2]};
+    if (const auto& p = GetParam().position; !p.empty()) {
+      place.position = {p[0], p[1], p[2]};
+      place.up = {0, 1, 0};
+    }
     write_png(folder_ / "image.png", make_noise(image_size));
     folder_.write("job.json", job_at(place, path, folder_ / "image.png", image_size,
                                      {{"output", "overlay"}, {"offset", offset * model.diagonal()}}));
