@@ -121,8 +121,10 @@ class Divider {
 
   void run() {
     constexpr int max_rounds = 10;  // halves an edge a thousandfold
+    // Where an image is torn, more of them would not mend it.
+    const std::size_t most_triangles = std::max<std::size_t>(50'000, 4 * mesh_->triangles.size());
     for (int round = 0; round < max_rounds; ++round) {
-      if (is_done()) return;
+      if (mesh_->triangles.size() > most_triangles || is_done()) return;
       std::vector<Triangle> divided;
       for (const Triangle& triangle : mesh_->triangles) divide(triangle, divided);
       mesh_->triangles = std::move(divided);

@@ -29,10 +29,11 @@ struct DecalMesh {
 
 /// Lays the decal's faces out as a mesh: those that meet the region, divided until the linear texture
 /// coordinates of every triangle lie within `max_deviation` pixels of the exact map (edges are divided for
-/// both their faces at once, so no crack opens), cut at the image's border, and moved by `offset` (scene
-/// units, >= 0) along the area-weighted mean of the model's normals at a vertex: so nothing tears where the
-/// model has an edge. There the mesh has several vertices at one place, each with the normal of the surface
-/// under its triangles.
+/// both their faces at once, so no crack opens; up to some ten thousand triangles, or four times as many
+/// as there were, which only an image that is torn to pieces takes), cut at the image's border, and moved by
+/// `offset` (scene units, >= 0) along the area-weighted mean of the model's normals at a vertex: so nothing
+/// tears where the model has an edge. There the mesh has several vertices at one place, each with the normal
+/// of the surface under its triangles.
 ///
 /// Where the region overlaps itself, sheet after sheet follows from the bottom up, and each lies one more
 /// `offset` above the surface. Where faces of several sheets meet, their vertices go with the highest, so

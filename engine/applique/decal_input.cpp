@@ -75,11 +75,11 @@ Result<void> check_input(const SurfaceMesh& surface, const DecalInput& input,
       const auto corners = surface.corners(input.features[k].surface.face);
       const double size = (corners[1] - corners[0]).norm() + (corners[2] - corners[0]).norm();
       if (overlap == Overlap::stop && (a - b).norm() <= coincident * size)
-        return fail(
-            ErrorCode::features_coincide,
-            fmt::format("{}{} and {} are on one spot of the surface; remove one of them, or give the decal "
-                        "\"overlap\": \"allow\" if the image is to lie over itself there",
-                        prefix, feature_name(input, j), feature_name(input, k)));
+        return fail(ErrorCode::features_coincide,
+                    fmt::format("{}{} and {} are on one spot of the surface, or all but; remove one of them, "
+                                "or give the decal "
+                                "\"overlap\": \"allow\" if the image is to lie over itself there",
+                                prefix, feature_name(input, j), feature_name(input, k)));
     }
   }
   if (input.features.size() == 1 && !(input.lone && input.lone->width > 0))

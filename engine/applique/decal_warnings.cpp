@@ -30,7 +30,7 @@ std::vector<Warning> quality_warnings(const std::string& name, const DecalMap& m
   const auto add = [&](const char* code, std::string message) {
     warnings.push_back({code, fmt::format("decal '{}': {}", name, message)});
   };
-  const double percent = 100 * map.quality.coverage;
+  const double percent = 100 * (map.quality.coverage - map.quality.doubled);
   switch (map.status) {
     case Coverage::covered:
       break;
@@ -40,7 +40,8 @@ std::vector<Warning> quality_warnings(const std::string& name, const DecalMap& m
       break;
     case Coverage::clipped_by_cover:
       add("clipped_by_cover",
-          fmt::format("the region meets itself on the surface and stops there; {:.2f} % of it is shown{}",
+          fmt::format("the region meets itself on the surface and {}; {:.2f} % of it is shown{}",
+                      options.overlap == Overlap::stop ? "stops there" : "cannot go on over itself there",
                       percent,
                       options.overlap == Overlap::stop && !is_rival(options.method)
                           ? "; \"overlap\": \"allow\" on the decal lets it go on over itself"
@@ -73,7 +74,7 @@ std::vector<Warning> quality_warnings(const std::string& name, const DecalMap& m
     add("overlapping_map",
         fmt::format("parts of the region land on the surface more than once ({:.2f} % in all): the "
                     "{}",
-                    percent,
+                    100 * map.quality.coverage,
                     is_rival(options.method) ? "map folds; make it smaller, or leave out \"method\""
                     : map.quality.feature_residual.size() == 1
                         ? "surface folds under it; check \"size\""
