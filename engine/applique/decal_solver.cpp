@@ -465,7 +465,8 @@ class DecalSolver::Work {
                                               input_.region.frame().pixels_per_unit());
     }
     // Only beyond the region, then, could the patch have gone on.
-    if (map_.quality.coverage > whole && map_.status != Coverage::not_converged)
+    if (map_.quality.coverage > whole && map_.quality.doubled < hardly_doubled &&
+        map_.status != Coverage::not_converged)
       map_.status = Coverage::covered;
   }
 
