@@ -236,6 +236,7 @@ TEST_F(UvConflictTest, ATinyDecalGetsNoMoreThanTheTextureThatIsAskedFor) {
     job["decals"][0]["size"] = size;
     const json report = bake(job);
     EXPECT_LT(report["decals"][0]["texel_density"]["texels_per_pixel"], 0.5);
+    ASSERT_FALSE(report["decals"][0]["warnings"].empty());
     EXPECT_EQ(report["decals"][0]["warnings"].back()["code"], "low_texel_density");
     const Model after = load("out.glb");
     for (const ModelMaterial& material : after.materials) {
