@@ -17,6 +17,7 @@
 #include "applique/lone_alignment.h"
 #include "applique/patch/patch_influence.h"
 #include "applique/patch/sheets.h"
+#include "applique/patch/show_once.h"
 #include "applique/region/clusters.h"
 #include "applique/region/influence.h"
 #include "applique/unfold.h"
@@ -439,7 +440,10 @@ class DecalSolver::Work {
     map_.textured.clear();
     map_.plane.clear();
     map_.image.clear();
-    const IdVector<PatchFaceId, char> shown = growth.shown(points_);
+    IdVector<PatchFaceId, char> shown = growth.shown(points_);
+    if (groups_.count == 1 &&
+        show_once(disc, points_, warp_, input_.region, growth.feature_faces(), shown) > 0)
+      map_.status = std::max(map_.status, Coverage::clipped_by_cover);
     for (PatchFaceId q : ids<PatchFaceId>(shown.size()))
       map_.textured.push_back(map_.patch.faces[q].mesh_face.valid() && shown[q]);
     for (const PatchPoint& point : points_) {

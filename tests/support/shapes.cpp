@@ -1,5 +1,6 @@
 #include "support/shapes.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -88,6 +89,58 @@ Soup bump(int cells, double height, double width) {
 
 Vec3 hills_at(double x, double y) {
   return {x, y, 0.12 * std::sin(4 * x + 1) * std::cos(5 * y) + 0.03 * std::sin(13 * x - 7 * y)};
+}
+
+Soup sponge(int level, int parts) {
+  int side = 1;
+  for (int k = 0; k < level; ++k) side *= 3;
+  const auto solid = [&](std::array<int, 3> cell) {
+    for (const int at : cell)
+      if (at < 0 || at >= side) return false;
+    for (int scale = side; scale > 1; scale /= 3)
+      if (std::count_if(cell.begin(), cell.end(), [&](int at) { return at / (scale / 3) % 3 == 1; }) > 1)
+        return false;
+    return true;
+  };
+  Soup soup;
+  std::map<std::array<int, 3>, std::uint32_t> known;
+  const auto corner = [&](const std::array<int, 3>& at) {
+    const auto [entry, is_new] = known.try_emplace(at, static_cast<std::uint32_t>(soup.positions.size()));
+    if (is_new) soup.positions.push_back(Vec3(at[0], at[1], at[2]) * (2.0 / side / parts) - Vec3(1, 1, 1));
+    return entry->second;
+  };
+  const auto add_square = [&](std::array<int, 3> at, int axis, bool up) {
+    std::array<std::uint32_t, 4> v = {};
+    const int u = (axis + 1) % 3, w = (axis + 2) % 3;
+    v[0] = corner(at);
+    ++at[u];
+    v[1] = corner(at);
+    ++at[w];
+    v[2] = corner(at);
+    --at[u];
+    v[3] = corner(at);
+    if (!up) std::swap(v[1], v[3]);
+    soup.triangles.push_back({v[0], v[1], v[2]});
+    soup.triangles.push_back({v[0], v[2], v[3]});
+  };
+  for (int i = 0; i < side * side * side; ++i) {
+    const std::array<int, 3> cell = {i % side, i / side % side, i / side / side};
+    if (!solid(cell)) continue;
+    for (int face = 0; face < 6; ++face) {
+      const int axis = face / 2, out = face % 2;
+      std::array<int, 3> beyond = cell;
+      beyond[axis] += 2 * out - 1;
+      if (solid(beyond)) continue;
+      for (int j = 0; j < parts * parts; ++j) {
+        std::array<int, 3> at = {cell[0] * parts, cell[1] * parts, cell[2] * parts};
+        at[axis] += out * parts;
+        at[(axis + 1) % 3] += j % parts;
+        at[(axis + 2) % 3] += j / parts;
+        add_square(at, axis, out == 1);
+      }
+    }
+  }
+  return soup;
 }
 
 Soup hills(int cells) {

@@ -35,6 +35,10 @@ Soup torus(int around, int across, double major, double minor);
 /// The plane [-1,1]^2 with a bump of the given height and width in the middle.
 Soup bump(int cells, double height, double width);
 
+/// The Menger sponge of the given level in [-1,1]^3: tunnels all over. `parts` squares to an edge of its
+/// cubes.
+Soup sponge(int level, int parts);
+
 /// Gentle hills over [-1,1]^2 and a place of them: nowhere developable, and flattened without a fold.
 Soup hills(int cells);
 Vec3 hills_at(double x, double y);

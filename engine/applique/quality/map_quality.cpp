@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "applique/base/convex_clip.h"
 #include "applique/base/predicates.h"
 
 namespace applique {
@@ -29,18 +30,6 @@ bool turns_over(const Warp& warp, const std::array<Vec2, 3>& triangle,
     if (cross(along_x, along_y) <= 0) return true;
   }
   return false;
-}
-
-/// Sutherland and Hodgman: the part of the polygon to the left of a -> b.
-std::vector<Vec2> clip(const std::vector<Vec2>& polygon, Vec2 a, Vec2 b) {
-  std::vector<Vec2> kept;
-  for (std::size_t i = 0; i < polygon.size(); ++i) {
-    const Vec2 from = polygon[i], to = polygon[(i + 1) % polygon.size()];
-    const double before = cross(b - a, from - a), after = cross(b - a, to - a);
-    if (before >= 0) kept.push_back(from);
-    if ((before < 0) != (after < 0)) kept.push_back(from + before / (before - after) * (to - from));
-  }
-  return kept;
 }
 
 /// Of the faces whose middles the map shows, the share, by area in the plane, that others lie over there. An
@@ -102,7 +91,7 @@ double area_in_region(const Region& region, const std::array<Vec2, 3>& triangle)
       region.contains_segment(triangle[1], triangle[2]) && region.contains_segment(triangle[2], triangle[0]))
     return whole;
   std::vector<Vec2> polygon = region.polygon();
-  for (int k = 0; k < 3; ++k) polygon = clip(polygon, triangle[k], triangle[(k + 1) % 3]);
+  for (int k = 0; k < 3; ++k) polygon = clip_left_of(polygon, triangle[k], triangle[(k + 1) % 3]);
   // About one of its own corners: the triangle's may be so far away that the area is lost to rounding.
   double area = 0;
   for (std::size_t i = 2; i < polygon.size(); ++i)
