@@ -23,15 +23,16 @@ bool is_sound(const DecalMap& map) {
   return folds(map) == 0 && map.quality.doubled < hardly_doubled && map.status != Coverage::not_converged;
 }
 
-/// Whether a map is to be preferred: one without folds or overlaps, then one that shows more, then the less
-/// stretched.
+/// What is shown of the region, against how much it is stretched there.
+double worth(const DecalMap& map) {
+  return std::min(map.quality.coverage, 1.0) / map.quality.l2_stretch;
+}
+
+/// Whether a map is to be preferred: one without folds or overlaps, then the one of more worth.
 bool sounder(const DecalMap& a, const DecalMap& b) {
   if (is_sound(a) != is_sound(b)) return is_sound(a);
   if (folds(a) != folds(b)) return folds(a) < folds(b);
-  constexpr double more = 0.01;  // of the region
-  const double shown_a = std::min(a.quality.coverage, 1.0), shown_b = std::min(b.quality.coverage, 1.0);
-  if (std::abs(shown_a - shown_b) > more) return shown_a > shown_b;
-  return a.quality.l2_stretch < b.quality.l2_stretch;
+  return worth(a) > worth(b);
 }
 
 /// Whether a sound map is much stretched, and there is surface beyond the image that might be instead: more

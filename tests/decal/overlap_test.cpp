@@ -114,6 +114,70 @@ TEST(Overlap, ABroadLabelGoesRoundACylinderOverItself) {
   EXPECT_LT(map->solves, 30);
 }
 
+/// A ribbon wound three times round a tube whose triangles are as high as its turns together: their paths
+/// share vertices and triangles.
+TEST(Overlap, AHelixWindsRoundTallTriangles) {
+  const SurfaceMesh surface = shapes::cylinder(48, 2, 1, 6).weld();
+  std::vector<Pin> pins;
+  for (int k = 0; k <= 17; ++k) {
+    const double turns = 3.0 * k / 17, angle = 2 * pi * turns;
+    pins.push_back({{50 + 1100 * turns / 3, 50}, {std::cos(angle), std::sin(angle), 2.4 + 0.4 * turns}});
+  }
+  for (const Overlap overlap : {Overlap::stop, Overlap::allow}) {
+    SolveOptions options;
+    options.overlap = overlap;
+    const auto map = solve_decal(surface, decal(surface, ribbon(), pins), options);
+    ASSERT_TRUE(map.has_value()) << map.error().message;
+    expect_exact_and_unfolded(*map);
+    // Its ends, beyond the pins, meet the turns beside them.
+    EXPECT_GT(map->quality.coverage, overlap == Overlap::allow ? 0.9999 : 0.9);
+    EXPECT_LT(map->quality.coverage, 1.0001);
+    EXPECT_LT(map->quality.l2_stretch, 1.001);
+    EXPECT_GE(map->sheets, 3U);
+  }
+}
+
+/// How often the map shows the image at most, at points all over it; and at how many of them not at all.
+std::pair<int, int> shown_at_points(const DecalMap& map, const Region& region) {
+  int most = 0, bare = 0;
+  for (int i = 0; i < 100; ++i)
+    for (int j = 0; j < 100; ++j) {
+      const Vec2 z(-0.9913 + 0.0199 * i, -0.9907 + 0.0199 * j);
+      if (!region.contains(z)) continue;
+      int shown = 0;
+      for (const PatchFaceId q : ids<PatchFaceId>(map.patch.faces.size())) {
+        const auto& v = map.patch.faces[q].vertices;
+        const Vec2 a = map.image[v[0]], b = map.image[v[1]], c = map.image[v[2]];
+        shown +=
+            map.textured[q] && cross(b - a, z - a) > 0 && cross(c - b, z - b) > 0 && cross(a - c, z - c) > 0;
+      }
+      most = std::max(most, shown);
+      bare += shown == 0;
+    }
+  return {most, bare};
+}
+
+/// The walls of tunnels lie over one another, and over what is round their mouths, in any flat map.
+TEST(Overlap, ADecalOverTunnelsIsShownOnce) {
+  const SurfaceMesh surface = shapes::sponge(2, 2).weld();
+  constexpr ImageFrame frame{256, 256};
+  const Region square = *Region::from_contour({{8, 8}, {248, 8}, {248, 248}, {8, 248}}, frame);
+  int clipped = 0;
+  for (const Vec3& position : {Vec3(0.45, 0.45, 1), Vec3(0.05, 0.4, 1), Vec3(1, -0.6, 0.45)})
+    for (const double size : {0.7, 1.2}) {
+      DecalInput input{"test", square, {{{128, 128}, shapes::nearest(surface, position), 0}}, {}};
+      input.lone = LoneFrame{size, Vec3(0, 1, 0)};
+      const auto map = solve_decal(surface, input);
+      ASSERT_TRUE(map.has_value()) << map.error().message;
+      expect_exact_and_unfolded(*map);
+      const auto [most, bare] = shown_at_points(*map, square);
+      EXPECT_EQ(most, 1);
+      EXPECT_NEAR(map->quality.coverage, 1 - bare / 8900.0, 0.02);
+      clipped += map->status == Coverage::clipped_by_cover;
+    }
+  EXPECT_GT(clipped, 2);
+}
+
 TEST(Overlap, StopsAtItselfUnlessAllowed) {
   const SurfaceMesh surface = shapes::cylinder(96, 40, 1, 4).weld();
   // Pinned on its first third only, the belt grows round and meets itself.

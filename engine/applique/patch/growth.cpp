@@ -10,9 +10,9 @@ constexpr std::size_t most_hole_sides = 64;
 constexpr double largest_pocket = 0.15;   // area, share of the patch's
 constexpr double longest_pocket_rim = 1;  // share of the region's diameter
 constexpr double largest_hole = 0.5;      // perimeter, share of the region's diameter
-// Below it two parts of the image are one sheet: the larger of sides of their triangles, and a share of the
-// region's diameter.
-constexpr double near_sides = 4;
+// Below it two parts of the image are one sheet: the larger of widths of their triangles, along the way from
+// one to the other, and a share of the region's diameter.
+constexpr double near_widths = 4;
 constexpr double near_share = 0.1;
 
 /// The apex of the face beyond edge a -> b, in the frame of that edge, from the triangle's own shape.
@@ -194,16 +194,19 @@ void Growth::note_cover() {
 bool Growth::covered_nearby(FaceId f, const std::array<Vec2, 3>& image, const PatchPoints& points,
                             PatchFaceId self) const {
   const auto middle = [](const std::array<Vec2, 3>& z) { return (z[0] + z[1] + z[2]) / 3.0; };
-  const auto side = [](const std::array<Vec2, 3>& z) {
-    return std::max({std::abs(z[1] - z[0]), std::abs(z[2] - z[1]), std::abs(z[0] - z[2])});
+  const auto width = [](const std::array<Vec2, 3>& z, Vec2 along) {
+    const auto [least, most] = std::minmax({dot(z[0], along), dot(z[1], along), dot(z[2], along)});
+    return most - least;
   };
   const auto over = over_.find(f);
   return over != over_.end() && std::any_of(over->second.begin(), over->second.end(), [&](PatchFaceId q) {
            if (q == self || !disc_.alive(q)) return false;
            const auto& v = disc_.faces()[q].vertices;
            const std::array<Vec2, 3> other = {points[v[0]].image, points[v[1]].image, points[v[2]].image};
-           return std::abs(middle(image) - middle(other)) <=
-                  std::max(near_sides * std::max(side(image), side(other)), near_share * region_.diameter());
+           const Vec2 way = middle(other) - middle(image);
+           const double distance = std::abs(way);
+           if (distance <= near_share * region_.diameter()) return true;
+           return distance <= near_widths * std::max(width(image, way), width(other, way)) / distance;
          });
 }
 
@@ -211,22 +214,30 @@ bool Growth::covered_nearby(FaceId f, const std::array<Vec2, 3>& image, const Pa
 ImmersedDisc::Glue Growth::glue(PatchFaceId q, int k, PatchPoints& points,
                                 IdVector<PatchVertexId, char>& inside) {
   const PatchFace face = disc_.faces()[q];
-  const FaceId beyond = disc_.surface().neighbour(face.mesh_face, k);
-  if (beyond.valid() && cover_limit_ > 1 && disc_.cover(beyond) > 0) {
-    const Vec2 a = points[face.vertices[(k + 1) % 3]].image, b = points[face.vertices[(k + 2) % 3]].image;
-    if (covered_nearby(beyond, {a, b, 0.5 * (a + b)}, points)) return ImmersedDisc::Glue::covered;
+  const PatchPoint a = points[face.vertices[(k + 1) % 3]], b = points[face.vertices[(k + 2) % 3]];
+  const BridgedSurface& surface = disc_.surface();
+  const FaceId beyond = surface.neighbour(face.mesh_face, k);
+  Vec2 apex = 0;  // of the face beyond, in the frame of the edge
+  if (beyond.valid()) {
+    const VertexId from = disc_.mesh_vertex(face.vertices[(k + 1) % 3]);
+    const VertexId to = disc_.mesh_vertex(face.vertices[(k + 2) % 3]);
+    const auto& v = surface.vertices(beyond);
+    const VertexId over = *std::find_if(v.begin(), v.end(), [&](VertexId w) { return w != from && w != to; });
+    apex = apex_in_edge_frame(surface.position(from), surface.position(to), surface.position(over));
   }
+  const PatchPoint predicted = {a.plane + (b.plane - a.plane) * apex, a.image + (b.image - a.image) * apex};
+  if (beyond.valid() && cover_limit_ > 1 && disc_.cover(beyond) > 0 &&
+      covered_nearby(beyond, {a.image, b.image, predicted.image}, points))
+    return ImmersedDisc::Glue::covered;
   const ImmersedDisc::GlueResult result = disc_.glue(q, k, cover_limit_);
   if (result.outcome != ImmersedDisc::Glue::glued) return result.outcome;
   if (cover_limit_ > 1) over_[beyond].push_back(result.face);
+  const bool beside_inside = inside[face.vertices[(k + 1) % 3]] || inside[face.vertices[(k + 2) % 3]];
   points.resize(disc_.vertex_count());
   inside.resize(disc_.vertex_count(), false);
   if (result.merged) return result.outcome;
-  const PatchVertexId a = face.vertices[(k + 1) % 3], b = face.vertices[(k + 2) % 3];
-  const Vec2 apex = apex_in_edge_frame(disc_.position(a), disc_.position(b), disc_.position(result.vertex));
-  points[result.vertex] = {points[a].plane + (points[b].plane - points[a].plane) * apex,
-                           points[a].image + (points[b].image - points[a].image) * apex};
-  inside[result.vertex] = (inside[a] || inside[b]) && region_.contains(points[result.vertex].image);
+  points[result.vertex] = predicted;
+  inside[result.vertex] = beside_inside && region_.contains(predicted.image);
   return result.outcome;
 }
 

@@ -83,7 +83,7 @@ double scale_along(const SurfaceMesh& mesh, const SeedFeature& from, const SeedF
 /// meet.
 std::unordered_map<FaceId, std::uint32_t> count_sheets(const SurfaceMesh& mesh,
                                                        const std::vector<Strand>& strands, double far) {
-  constexpr double far_edges = 8;
+  constexpr double far_widths = 8;
   struct Mark {
     const Strand* strand;
     Vec2 image;
@@ -95,21 +95,22 @@ std::unordered_map<FaceId, std::uint32_t> count_sheets(const SurfaceMesh& mesh,
         std::vector<Mark>& list = marks[f];
         if (list.empty() || list.back().strand != &strand) list.push_back({&strand, strand.image[i]});
       });
-  const auto apart = [&](const Mark& a, const Mark& b, double edge) {
+  const auto apart = [&](const Mark& a, const Mark& b, double width) {
     const bool adjacent = a.strand->from == b.strand->from || a.strand->from == b.strand->to ||
                           a.strand->to == b.strand->from || a.strand->to == b.strand->to;
     return !adjacent && std::abs(a.image - b.image) >
-                            std::max(far_edges * edge * std::max(a.strand->scale, b.strand->scale), far);
+                            std::max(far_widths * width * std::max(a.strand->scale, b.strand->scale), far);
   };
   std::unordered_map<FaceId, std::uint32_t> sheets;
   for (const auto& [f, list] : marks) {
     const auto corners = mesh.corners(f);
-    const double edge = std::max({(corners[1] - corners[0]).norm(), (corners[2] - corners[1]).norm(),
-                                  (corners[0] - corners[2]).norm()});
+    const double longest = std::max({(corners[1] - corners[0]).norm(), (corners[2] - corners[1]).norm(),
+                                     (corners[0] - corners[2]).norm()});
+    const double width = (corners[1] - corners[0]).cross(corners[2] - corners[0]).norm() / longest;
     std::vector<const Mark*> distinct;
     for (const Mark& mark : list)
       if (std::all_of(distinct.begin(), distinct.end(),
-                      [&](const Mark* other) { return apart(mark, *other, edge); }))
+                      [&](const Mark* other) { return apart(mark, *other, width); }))
         distinct.push_back(&mark);
     sheets[f] = static_cast<std::uint32_t>(distinct.size());
   }
