@@ -184,7 +184,8 @@ struct GpuTransfer::Run {
   std::size_t first_level = 0;  // In `decal`, once that is there.
   std::vector<shader::vec4> table{};
 
-  std::vector<RefinedFace> refined{};  // By face; not cut where linear.
+  std::vector<std::optional<TexelBounds>> shown{};  // By face.
+  std::vector<RefinedFace> refined{};             // By face; not cut where linear.
 
   Result<void> upload_decal(const Device& device, std::size_t needed_level, std::size_t piece_texels);
 };
@@ -243,7 +244,8 @@ Result<const ComputePipeline*> GpuTransfer::shading_pipeline(Shading shading, st
 Result<TransferResult> GpuTransfer::run(const Transfer& transfer, Image& texture, bool keep_samples) {
   const std::vector<std::uint32_t> sheets = sheets_of(transfer);
   Run run{transfer, texture, keep_samples, working_bits(texture, sheets.size())};
-  run.refined = refine_faces(transfer);
+  run.shown = shown_parts(transfer);
+  run.refined = refine_faces(transfer, run.shown);
   if (transfer.warp && transfer.warp->steps > 0) run.table = warp_table(*transfer.warp);
   for (const std::uint32_t sheet : sheets) {
     for (int y = 0; y < texture.height; y += options_.tile) {
@@ -265,7 +267,7 @@ Result<TransferResult> GpuTransfer::run(const Transfer& transfer, Image& texture
 Result<void> GpuTransfer::run_tile(Run& run, std::uint32_t sheet, const TexelRect& tile) {
   const Device& device = *device_;
   const Transfer& transfer = run.transfer;
-  TilePlan plan = plan_tile(transfer, run.texture.width, run.texture.height, tile, sheet);
+  TilePlan plan = plan_tile(transfer, run.shown, run.texture.width, run.texture.height, tile, sheet);
   if (plan.jobs.empty()) return {};
   const TexelRect &work = plan.work, &region = plan.region;
   const std::size_t foreign_first = plan.jobs.size();

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <optional>
 #include <set>
 
@@ -55,12 +56,8 @@ struct AxisCopies {
   }
 };
 
-struct Bounds {
-  double lower[2], upper[2];
-};
-
-std::optional<Bounds> bounds_of(const std::array<Texel, 3>& corners) {
-  Bounds bounds{};
+std::optional<TexelBounds> bounds_of(const std::array<Texel, 3>& corners) {
+  TexelBounds bounds{};
   for (int axis = 0; axis < 2; ++axis) {
     const auto [low, high] = std::minmax({corners[0][axis], corners[1][axis], corners[2][axis]});
     if (!(high - low <= max_extent) || !(std::abs(low) < 1e9)) return std::nullopt;
@@ -72,7 +69,7 @@ std::optional<Bounds> bounds_of(const std::array<Texel, 3>& corners) {
 
 // Calls `visit(x, y, bounds)` for every copy of a part of the plane that touches `window`, a rectangle of it.
 template <class Visit>
-void for_each_copy(const Transfer& transfer, const std::optional<Bounds>& bounds, int width, int height,
+void for_each_copy(const Transfer& transfer, const std::optional<TexelBounds>& bounds, int width, int height,
                    const TexelRect& window, Visit visit) {
   if (!bounds) return;
   const AxisCopies copies_x(transfer.wrap_u, width, bounds->lower[0], bounds->upper[0], window.x,
@@ -89,7 +86,7 @@ void for_each_copy(const Transfer& transfer, const std::optional<Bounds>& bounds
           x.sign * (x.sign > 0 ? bounds->lower[0] : bounds->upper[0]) + static_cast<double>(x.shift);
       const double x1 = x0 + bounds->upper[0] - bounds->lower[0];
       if (x1 < window.x || x0 > window.x + window.width) return;
-      visit(x, y, Bounds{{x0, y0}, {x1, y1}});
+      visit(x, y, TexelBounds{{x0, y0}, {x1, y1}});
     });
   });
 }
@@ -159,7 +156,7 @@ struct BlockMask {
 
 // Jobs for the blocks of the region that a triangle (plane coordinates) touches, of those that meet `within`.
 // `allowed` limits the blocks.
-void add_jobs(FixedCorners corners, const Bounds& within, std::uint32_t key, const TexelRect& region,
+void add_jobs(FixedCorners corners, const TexelBounds& within, std::uint32_t key, const TexelRect& region,
               const BlockMask* allowed, std::vector<shader::RasterJob>& jobs) {
   const auto edge_area = [](const auto& p, const auto& q, const auto& r) {
     return (q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0]);
@@ -272,77 +269,126 @@ Footprint footprint_of(const AffineMap& map, std::size_t levels) {
   return footprint;
 }
 
-// A place of a face, in the texture and in the image (pixels).
+// A place of a face, in the texture and in the image or the plane.
 struct FacePlace {
   Texel texel;
-  std::array<double, 2> pixel;
+  std::array<double, 2> at;
 };
 
-// The part of a convex polygon where sign * pixel[axis] <= limit.
+// The part of a convex polygon where sign * at[axis] <= limit.
 std::vector<FacePlace> clip(const std::vector<FacePlace>& polygon, std::size_t axis, double sign,
                             double limit) {
   std::vector<FacePlace> kept;
   for (std::size_t i = 0; i < polygon.size(); ++i) {
     const FacePlace &from = polygon[i], &to = polygon[(i + 1) % polygon.size()];
-    const double before = limit - sign * from.pixel[axis], after = limit - sign * to.pixel[axis];
+    const double before = limit - sign * from.at[axis], after = limit - sign * to.at[axis];
     if (before >= 0) kept.push_back(from);
     if ((before < 0) == (after < 0)) continue;
     const double t = before / (before - after);
     FacePlace& place = kept.emplace_back();
     for (std::size_t c = 0; c < 2; ++c) {
       place.texel[c] = from.texel[c] + t * (to.texel[c] - from.texel[c]);
-      place.pixel[c] = from.pixel[c] + t * (to.pixel[c] - from.pixel[c]);
+      place.at[c] = from.at[c] + t * (to.at[c] - from.at[c]);
     }
   }
   return kept;
 }
 
-// The part of a large linear face whose texels, or those that extend it in the gutter, may show some of the
-// image: a small decal may lie in a large triangle. None: no such part. Other faces count as a whole.
-std::optional<Bounds> shown_bounds(const Transfer& transfer, const TransferFace& face) {
-  constexpr double large = 128;  // Texels a side.
-  const std::optional<Bounds> whole = bounds_of(face.texel);
-  const bool linear = face.linear || transfer.warp == nullptr || transfer.warp->steps == 0;
-  if (!whole || !linear || triangle_area2(face.texel) == 0) return whole;
-  if (whole->upper[0] - whole->lower[0] < large && whole->upper[1] - whole->lower[1] < large) return whole;
-  const ImageFrame& frame = transfer.image->frame;
-  std::vector<FacePlace> polygon;
-  std::array<std::array<double, 2>, 3> pixels;
-  for (std::size_t k = 0; k < 3; ++k) {
-    const Pixel pixel = frame.to_pixel(face.image[k]);
-    pixels[k] = {pixel.x, pixel.y};
-    polygon.push_back({face.texel[k], pixels[k]});
-  }
-  const AffineMap map = affine_map(face.texel, pixels);
-  const Footprint footprint = footprint_of(map, transfer.image->levels.size());
-  const std::array<double, 2> size = {frame.width, frame.height};
-  for (std::size_t axis = 0; axis < 2; ++axis) {
-    // What a texel's footprint and the filter of its level reach.
-    const double margin = std::abs(map.dx[axis]) + std::abs(map.dy[axis]) + std::ldexp(2.0, footprint.level);
-    polygon = clip(polygon, axis, 1, size[axis] + margin);
-    polygon = clip(polygon, axis, -1, margin);
-  }
-  if (polygon.empty()) return std::nullopt;
-  Bounds shown{{HUGE_VAL, HUGE_VAL}, {-HUGE_VAL, -HUGE_VAL}};
-  const double reach = std::min(transfer.gutter, 255u) + 2.0;
-  for (const FacePlace& place : polygon)
-    for (std::size_t axis = 0; axis < 2; ++axis) {
-      shown.lower[axis] = std::min(shown.lower[axis], place.texel[axis] - reach);
-      shown.upper[axis] = std::max(shown.upper[axis], place.texel[axis] + reach);
-    }
-  for (std::size_t axis = 0; axis < 2; ++axis) {
-    shown.lower[axis] = std::max(shown.lower[axis], whole->lower[axis]);
-    shown.upper[axis] = std::min(shown.upper[axis], whole->upper[axis]);
-  }
-  return shown;
-}
+// A rectangle of the image (pixels) or of the plane.
+struct Box {
+  std::array<double, 2> lower = {HUGE_VAL, HUGE_VAL}, upper = {-HUGE_VAL, -HUGE_VAL};
 
-// Whether there is more of a face than what shows the image.
-bool is_clipped(const Transfer& transfer, const TransferFace& face) {
-  const std::optional<Bounds> whole = bounds_of(face.texel), shown = shown_bounds(transfer, face);
-  if (!whole) return false;
-  return !shown || !std::equal(shown->lower, shown->lower + 2, whole->lower) ||
-         !std::equal(shown->upper, shown->upper + 2, whole->upper);
+  void add(const std::array<double, 2>& at) {
+    for (std::size_t axis = 0; axis < 2; ++axis) {
+      lower[axis] = std::min(lower[axis], at[axis]);
+      upper[axis] = std::max(upper[axis], at[axis]);
+    }
+  }
+  [[nodiscard]] Box grown(const std::array<double, 2>& by) const {
+    return {{lower[0] - by[0], lower[1] - by[1]}, {upper[0] + by[0], upper[1] + by[1]}};
+  }
+};
+
+// Finds the parts of faces that show the image: small decals lie in large triangles.
+class ShownParts {
+ public:
+  explicit ShownParts(const Transfer& transfer) : transfer_(transfer) {}
+
+  // The part of a large face whose texels, or those that extend it in the gutter, may show some of the image.
+  // None: no such part. Small faces count as a whole, and those of a warp with groups.
+  std::optional<TexelBounds> part_of(const TransferFace& face) {
+    constexpr double large = 128;  // Texels a side.
+    const std::optional<TexelBounds> whole = bounds_of(face.texel);
+    const bool warped = !face.linear && transfer_.warp != nullptr && transfer_.warp->steps > 0;
+    if (!whole || triangle_area2(face.texel) == 0 || (warped && transfer_.warp->groups > 1)) return whole;
+    if (whole->upper[0] - whole->lower[0] < large && whole->upper[1] - whole->lower[1] < large) return whole;
+    const ImageFrame& frame = transfer_.image->frame;
+    std::array<std::array<double, 2>, 3> pixels, places;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Pixel pixel = frame.to_pixel(face.image[k]);
+      pixels[k] = {pixel.x, pixel.y};
+      places[k] = warped ? std::array{face.plane[k].real(), face.plane[k].imag()} : pixels[k];
+    }
+    const AffineMap map = affine_map(face.texel, pixels);
+    // What a texel's footprint and the filter of its level reach.
+    const double filter = std::ldexp(2.0, footprint_of(map, transfer_.image->levels.size()).level);
+    const std::array<double, 2> margin = {std::abs(map.dx[0]) + std::abs(map.dy[0]) + filter,
+                                          std::abs(map.dx[1]) + std::abs(map.dy[1]) + filter};
+    const Box image = Box{{0, 0}, {double(frame.width), double(frame.height)}}.grown(margin);
+    const Box box = warped ? in_plane(std::max(margin[0], margin[1])) : image;
+    std::vector<FacePlace> polygon;
+    for (std::size_t k = 0; k < 3; ++k) polygon.push_back({face.texel[k], places[k]});
+    for (std::size_t axis = 0; axis < 2; ++axis) {
+      polygon = clip(polygon, axis, 1, box.upper[axis]);
+      polygon = clip(polygon, axis, -1, -box.lower[axis]);
+    }
+    if (polygon.empty()) return std::nullopt;
+    const double reach = std::min(transfer_.gutter, 255u) + 2.0;
+    Box texels;
+    for (const FacePlace& place : polygon) texels.add(place.texel);
+    texels = texels.grown({reach, reach});
+    TexelBounds shown = *whole;
+    for (std::size_t axis = 0; axis < 2; ++axis) {
+      shown.lower[axis] = std::max(shown.lower[axis], texels.lower[axis]);
+      shown.upper[axis] = std::min(shown.upper[axis], texels.upper[axis]);
+    }
+    return shown;
+  }
+
+ private:
+  // A box of the plane outside which the warp takes nothing to within `margin` pixels of the image: about
+  // the places that it takes to the rim, and somewhat more, for what bends between these. A flow takes the
+  // inside of the one to the inside of the other.
+  const Box& in_plane(double margin) {
+    constexpr int parts = 64;                          // Of a side.
+    constexpr double more = 0.5;                       // Of the box's size.
+    margin = std::exp2(std::ceil(std::log2(margin)));  // So that there are few.
+    const auto [known, is_new] = in_plane_.try_emplace(margin);
+    if (!is_new) return known->second;
+    const ImageFrame& frame = transfer_.image->frame;
+    const double width = frame.width + 2 * margin, height = frame.height + 2 * margin;
+    Box rim;
+    for (int i = 0; i < parts; ++i) {
+      const double x = width * i / parts - margin, y = height * i / parts - margin;
+      for (const Pixel pixel :
+           {Pixel{x, -margin}, Pixel{frame.width + margin, y}, Pixel{frame.width - x, frame.height + margin},
+            Pixel{-margin, frame.height - y}}) {
+        const Vec2 z = transfer_.warp->backward(frame.to_plane(pixel));
+        rim.add({z.real(), z.imag()});
+      }
+    }
+    known->second = rim.grown({more * (rim.upper[0] - rim.lower[0]), more * (rim.upper[1] - rim.lower[1])});
+    return known->second;
+  }
+
+  const Transfer& transfer_;
+  std::map<double, Box> in_plane_;  ///< By margin.
+};
+
+// Whether there is more of a face than its part.
+bool is_clipped(const TransferFace& face, const std::optional<TexelBounds>& part) {
+  const std::optional<TexelBounds> whole = bounds_of(face.texel);
+  return whole && (!part || part->lower != whole->lower || part->upper != whole->upper);
 }
 
 }  // namespace
@@ -353,8 +399,15 @@ std::vector<std::uint32_t> sheets_of(const Transfer& transfer) {
   return {sheets.begin(), sheets.end()};
 }
 
-TilePlan plan_tile(const Transfer& transfer, int width, int height, const TexelRect& tile,
-                   std::uint32_t sheet) {
+std::vector<std::optional<TexelBounds>> shown_parts(const Transfer& transfer) {
+  ShownParts parts(transfer);
+  std::vector<std::optional<TexelBounds>> shown;
+  for (const TransferFace& face : transfer.faces) shown.push_back(parts.part_of(face));
+  return shown;
+}
+
+TilePlan plan_tile(const Transfer& transfer, std::span<const std::optional<TexelBounds>> shown, int width,
+                   int height, const TexelRect& tile, std::uint32_t sheet) {
   const int gutter = static_cast<int>(std::min(transfer.gutter, 255u));
   TilePlan plan;
 
@@ -368,7 +421,7 @@ TilePlan plan_tile(const Transfer& transfer, int width, int height, const TexelR
 
   struct Shape {
     FixedCorners corners;
-    Bounds shown;
+    TexelBounds shown;
   };
   std::vector<Shape> shapes;  // By placement.
   const TexelRect window = with_margin(tile);
@@ -376,8 +429,8 @@ TilePlan plan_tile(const Transfer& transfer, int width, int height, const TexelR
   for (std::uint32_t face = 0; face < transfer.faces.size(); ++face) {
     if (transfer.faces[face].sheet != sheet) continue;
     const auto& corners = transfer.faces[face].texel;
-    for_each_copy(transfer, shown_bounds(transfer, transfer.faces[face]), width, height, window,
-                  [&](const AxisCopy& x, const AxisCopy& y, const Bounds& bounds) {
+    for_each_copy(transfer, shown[face], width, height, window,
+                  [&](const AxisCopy& x, const AxisCopy& y, const TexelBounds& bounds) {
                     plan.placements.push_back({face, moved_corners(corners, x, y)});
                     shapes.push_back({fixed_corners(corners, x, y), bounds});
                     x0 = std::min(x0, static_cast<int>(std::floor(bounds.lower[0])) - gutter - 1);
@@ -413,7 +466,7 @@ TilePlan plan_tile(const Transfer& transfer, int width, int height, const TexelR
 
   const auto mark = [&](const std::array<Texel, 3>& corners, std::uint32_t bit) {
     for_each_copy(transfer, bounds_of(corners), width, height, plan.region,
-                  [&](const AxisCopy& x, const AxisCopy& y, const Bounds& bounds) {
+                  [&](const AxisCopy& x, const AxisCopy& y, const TexelBounds& bounds) {
                     add_jobs(fixed_corners(corners, x, y), bounds, bit, plan.region, &seen,
                              plan.foreign_jobs);
                   });
@@ -421,8 +474,10 @@ TilePlan plan_tile(const Transfer& transfer, int width, int height, const TexelR
   for (const auto& corners : transfer.foreign) mark(corners, shader::foreign_bit);
   for (const auto& corners : transfer.copies) mark(corners, shader::copy_key);
   // What does not show the image keeps others' gutters out all the same.
-  for (const TransferFace& face : transfer.faces)
-    if (face.sheet != sheet || is_clipped(transfer, face)) mark(face.texel, shader::sheet_bit);
+  for (std::size_t i = 0; i < transfer.faces.size(); ++i) {
+    const TransferFace& face = transfer.faces[i];
+    if (face.sheet != sheet || is_clipped(face, shown[i])) mark(face.texel, shader::sheet_bit);
+  }
   return plan;
 }
 

@@ -2,6 +2,8 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
+#include <span>
 #include <vector>
 
 #include "applique/transfer/transfer.h"
@@ -38,13 +40,22 @@ struct TilePlan {
 /// The ranks that faces of the transfer have, from below to above: what is composited one after the other.
 std::vector<std::uint32_t> sheets_of(const Transfer& transfer);
 
+/// A rectangle of the texture's unwrapped plane.
+struct TexelBounds {
+  std::array<double, 2> lower, upper;
+};
+/// By face: the part of it whose texels, or those that extend it in the gutter, may show some of the image. A
+/// small decal may lie in a large triangle. None: nothing of it does.
+std::vector<std::optional<TexelBounds>> shown_parts(const Transfer& transfer);
+
 /// Plans the part of a sheet that lies in `tile`, a rectangle of the texture (at most 65536 texels a side).
 /// The transfer's other sheets keep the gutter out, as foreign triangles do, but are not UV overlap.
 ///
 /// Coverage is decided with corners rounded to 1/256 texel and exact integer edge functions; of two triangles
 /// on either side of an edge through a texel's centre, one has it.
-TilePlan plan_tile(const Transfer& transfer, int texture_width, int texture_height, const TexelRect& tile,
-                   std::uint32_t sheet = 0);
+/// `shown` is shown_parts() of the transfer.
+TilePlan plan_tile(const Transfer& transfer, std::span<const std::optional<TexelBounds>> shown,
+                   int texture_width, int texture_height, const TexelRect& tile, std::uint32_t sheet = 0);
 
 /// Sheets over each other are composited at 16 bits, whatever the texture has: so 8 bits are rounded to once,
 /// when all are done.

@@ -54,10 +54,11 @@ double deviation(int fine, const std::vector<Pixel>& points) {
   return largest;
 }
 
-RefinedFace refine_face(const Transfer& transfer, std::size_t face) {
+RefinedFace refine_face(const Transfer& transfer, std::size_t face, const TexelBounds& shown) {
   const auto& t = transfer.faces[face].texel;
-  const double texels =
-      0.5 * std::abs((t[1][0] - t[0][0]) * (t[2][1] - t[0][1]) - (t[1][1] - t[0][1]) * (t[2][0] - t[0][0]));
+  const double texels = std::min(
+      0.5 * std::abs((t[1][0] - t[0][0]) * (t[2][1] - t[0][1]) - (t[1][1] - t[0][1]) * (t[2][0] - t[0][0])),
+      (shown.upper[0] - shown.lower[0]) * (shown.upper[1] - shown.lower[1]));
   RefinedFace refined;
   for (const Vec2 image : transfer.faces[face].image)
     refined.points.push_back(transfer.image->frame.to_pixel(image));
@@ -105,13 +106,15 @@ Pixel warp_in_face(const Transfer& transfer, std::size_t face, double u, double 
   return transfer.image->frame.to_pixel((*transfer.warp)(p, influence));
 }
 
-std::vector<RefinedFace> refine_faces(const Transfer& transfer) {
+std::vector<RefinedFace> refine_faces(const Transfer& transfer,
+                                      std::span<const std::optional<TexelBounds>> shown) {
   std::vector<RefinedFace> refined(transfer.faces.size());
   if (!transfer.warp || transfer.warp->steps == 0) return refined;
   APPLIQUE_ASSERT(transfer.warp->groups == 1 ||
                   transfer.influence.size() == 3 * transfer.faces.size() * transfer.warp->groups);
   parallel_for(static_cast<int>(refined.size()), [&](int i) {
-    if (!transfer.faces[i].linear) refined[i] = refine_face(transfer, static_cast<std::size_t>(i));
+    if (!transfer.faces[i].linear && shown[i])
+      refined[i] = refine_face(transfer, static_cast<std::size_t>(i), *shown[i]);
   });
   return refined;
 }

@@ -141,11 +141,13 @@ void blend_over(std::uint16_t* texel, const Colour& source, const Transfer& tran
       texel[c] = static_cast<std::uint16_t>(std::floor(clamp01(result[c]) * steps + 0.5) * (65535 / steps));
 }
 
-// `refined` by face. Adds to `total`.
-void composite_sheet(const Transfer& transfer, std::uint32_t sheet, const std::vector<RefinedFace>& refined,
-                     int bits, bool keep_samples, Image& texture, TransferResult& total) {
+// `shown` and `refined` by face. Adds to `total`.
+void composite_sheet(const Transfer& transfer, std::uint32_t sheet,
+                     std::span<const std::optional<TexelBounds>> shown,
+                     const std::vector<RefinedFace>& refined, int bits, bool keep_samples, Image& texture,
+                     TransferResult& total) {
   const TilePlan plan =
-      plan_tile(transfer, texture.width, texture.height, {0, 0, texture.width, texture.height}, sheet);
+      plan_tile(transfer, shown, texture.width, texture.height, {0, 0, texture.width, texture.height}, sheet);
   const int gutter = static_cast<int>(std::min(transfer.gutter, 255u));
   const TexelRect &work = plan.work, &region = plan.region;
 
@@ -214,12 +216,13 @@ void composite_sheet(const Transfer& transfer, std::uint32_t sheet, const std::v
 }  // namespace
 
 TransferResult transfer_on_cpu(const Transfer& transfer, Image& texture, bool keep_samples) {
-  const std::vector<RefinedFace> refined = refine_faces(transfer);
+  const auto shown = shown_parts(transfer);
+  const std::vector<RefinedFace> refined = refine_faces(transfer, shown);
   const std::vector<std::uint32_t> sheets = sheets_of(transfer);
   const int bits = working_bits(texture, sheets.size());
   TransferResult result;
   for (const std::uint32_t sheet : sheets)
-    composite_sheet(transfer, sheet, refined, bits, keep_samples, texture, result);
+    composite_sheet(transfer, sheet, shown, refined, bits, keep_samples, texture, result);
   if (bits != texture.bits) round_to_8_bits(texture);
   if (texture.channels < 3 && result.covered_texels + result.gutter_texels > 0) texture.channels += 2;
   return result;
