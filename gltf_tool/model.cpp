@@ -380,7 +380,14 @@ Result<Model> decode_model(Document document) {
 
 Result<Model> load_model(const std::filesystem::path& path) {
   APPLIQUE_TRY(Document document, load_document(path));
-  return decode_model(std::move(document));
+  APPLIQUE_TRY(Model model, decode_model(std::move(document)));
+  for (const auto& file : files_of(model.document))
+    if (std::error_code error; !std::filesystem::exists(file, error))
+      model.warnings.push_back(
+          {"file_missing", fmt::format("'{}', which '{}' names, is not there; what is written names it all "
+                                       "the same",
+                                       file.string(), model.document.name)});
+  return model;
 }
 
 Result<Image> load_model_image(const Model& model, std::size_t image) {

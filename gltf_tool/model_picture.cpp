@@ -35,7 +35,7 @@ constexpr std::array shown_slots = {MaterialSlot::base_color, MaterialSlot::meta
                                     MaterialSlot::normal, MaterialSlot::emissive};
 
 /// The images that the parts show, decoded side by side. Without its base colour a part would not be itself;
-/// what else cannot be read is left out.
+/// what else cannot be read is left out, and so is what is not there, of which a loaded model warns.
 Result<std::map<std::size_t, Image>> load_images(const Model& model) {
   std::map<std::size_t, std::future<Result<Image>>> loading;
   std::set<std::size_t> needed;
@@ -50,7 +50,7 @@ Result<std::map<std::size_t, Image>> load_images(const Model& model) {
   std::map<std::size_t, Image> images;
   for (auto& [index, loaded] : loading) {
     auto image = loaded.get();
-    if (!image && !needed.contains(index)) continue;
+    if (!image && (!needed.contains(index) || image.error().code == ErrorCode::file_unreadable)) continue;
     APPLIQUE_TRY(images[index], std::move(image));
   }
   return images;

@@ -34,8 +34,12 @@ Result<void> write_json(const std::filesystem::path& path, const nlohmann::order
                     document.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n");
 }
 
+void log_warnings(const Model& model) {
+  for (const Warning& warning : model.warnings) spdlog::warn("{}", warning.message);
+}
+
 void log_warnings(const SolvedJob& job) {
-  for (const Warning& warning : job.model.warnings) spdlog::warn("{}", warning.message);
+  log_warnings(job.model);
   for (const SolvedDecal& decal : job.decals)
     for (const Warning& warning : decal.warnings) spdlog::warn("{}", warning.message);
 }

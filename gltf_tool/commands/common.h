@@ -28,7 +28,8 @@ CLI::App* add_subcommand(CLI::App& app, const std::string& name, const std::stri
 /// Writes a JSON document, indented, with a newline at its end. Errors: output_unwritable.
 Result<void> write_json(const std::filesystem::path& path, const nlohmann::ordered_json& document);
 
-/// Tells the warnings of the model and of the decals.
+/// Tells the warnings of the model, and of the decals.
+void log_warnings(const Model& model);
 void log_warnings(const SolvedJob& job);
 
 /// One line about each decal: "tiger: 5 features within 2e-13 px, 5796 triangles, …".

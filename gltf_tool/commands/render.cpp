@@ -78,6 +78,7 @@ Result<void> run_render(const RenderArguments& arguments, const CommonArguments&
   progress.show("loading the model", 0);
   APPLIQUE_TRY(const Model model, load_model(arguments.model));
   APPLIQUE_CHECK(check_distinct(outputs, files_of(model.document)));
+  log_warnings(model);
   APPLIQUE_TRY(const Camera camera, find_camera(arguments, job, model, size));
   progress.show("rendering", 0.5);
   DeviceRequest request;

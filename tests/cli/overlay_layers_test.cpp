@@ -180,6 +180,16 @@ TEST_F(OverlayLayers, LetTheGroundThroughAsABakeDoes) {
   EXPECT_EQ(report()["decals"][0]["warnings"], json::array());
 }
 
+/// An overlay needs none of the model's images; that one is gone is told all the same.
+TEST_F(OverlayLayers, AnImageThatIsGoneIsWarnedOf) {
+  edit_model([](Document& document) { document.json["images"][0] = {{"uri", "gone.png"}}; });
+  bake_material(overlay_job({{"roughness", 0.3}}));
+  const json warnings = report()["warnings"];
+  ASSERT_EQ(warnings.size(), 1u) << warnings;
+  EXPECT_EQ(warnings[0]["code"], "file_missing");
+  EXPECT_NE(warnings[0]["message"].get<std::string>().find("gone.png"), std::string::npos);
+}
+
 TEST_F(OverlayLayers, AGroundThatIsNotOneValueIsWarnedOf) {
   add_ground_texture("metallicRoughnessTexture");
   add_ground_texture("normalTexture");
