@@ -76,8 +76,9 @@ struct Model {
   [[nodiscard]] double diagonal() const { return (upper - lower).norm(); }
 };
 
-/// Reads a .glb or .gltf with its files; images that are not there are warned of (file_missing). Errors: file_unreadable, model_invalid (names the accessor, node,
-/// …), model_unsupported (names the extension or format and what to do).
+/// Reads a .glb or .gltf with its files; images that are not there are warned of (file_missing). Errors:
+/// file_unreadable, model_invalid (names the accessor, node, …), model_unsupported (names the extension or
+/// format and what to do).
 Result<Model> load_model(const std::filesystem::path& path);
 
 /// The same for a document in memory (an edited one, say).

@@ -185,7 +185,7 @@ struct GpuTransfer::Run {
   std::vector<shader::vec4> table{};
 
   std::vector<std::optional<TexelBounds>> shown{};  // By face.
-  std::vector<RefinedFace> refined{};             // By face; not cut where linear.
+  std::vector<RefinedFace> refined{};               // By face; not cut where linear.
 
   Result<void> upload_decal(const Device& device, std::size_t needed_level, std::size_t piece_texels);
 };
