@@ -8,6 +8,7 @@
 
 #include <Eigen/SparseCholesky>
 
+#include "applique/base/parallel.h"
 #include "applique/image/decal_image.h"
 
 namespace applique {
@@ -384,13 +385,13 @@ void join_seams(std::span<const Seam> seams, std::span<const SeamTexture> textur
   const std::vector<Sample> samples = worth_joining(samples_along(seams, textures), textures, encoding);
   if (samples.empty()) return;
   const Unknowns unknowns(samples, textures);
-  for (int channel = 0; channel < 4; ++channel) {
+  parallel_for(4, [&](int channel) {
     const bool writes = std::any_of(textures.begin(), textures.end(), [&](const SeamTexture& texture) {
       return texture.channels[static_cast<std::size_t>(channel)];
     });
     if (writes)
       Channel(samples, unknowns, textures, channel, coding_of(encoding, channel), terms_of(fit)).join();
-  }
+  });
 }
 
 }  // namespace applique
