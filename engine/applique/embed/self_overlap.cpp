@@ -16,21 +16,15 @@ struct RimEdge {
   double left, right, bottom, top;
 };
 
-/// The edges between faces that lie in the region and what does not.
-std::vector<RimEdge> find_rim(const ImmersedDisc& disc, const PatchPoints& points, const Region& region) {
-  IdVector<PatchVertexId, char> inside(disc.vertex_count(), false);
-  for (PatchVertexId v : ids<PatchVertexId>(disc.vertex_count()))
-    inside[v] = disc.alive(v) && region.contains(points[v].image);
-  const auto covered = [&](PatchFaceId q) {
-    const auto& v = disc.faces()[q].vertices;
-    return inside[v[0]] && inside[v[1]] && inside[v[2]];
-  };
+/// The edges between some faces and what is none of them.
+std::vector<RimEdge> find_rim(const ImmersedDisc& disc, const PatchPoints& points,
+                              const IdVector<PatchFaceId, char>& among) {
   std::vector<RimEdge> rim;
-  for (PatchFaceId q : ids<PatchFaceId>(disc.faces().size())) {
-    if (!disc.alive(q) || !covered(q)) continue;
+  for (PatchFaceId q : ids<PatchFaceId>(among.size())) {
+    if (!among[q]) continue;
     const PatchFace& face = disc.faces()[q];
     for (int k = 0; k < 3; ++k) {
-      if (face.neighbours[k].valid() && covered(face.neighbours[k])) continue;
+      if (face.neighbours[k].valid() && among[face.neighbours[k]]) continue;
       const PatchPoint &a = points[face.vertices[(k + 1) % 3]], &b = points[face.vertices[(k + 2) % 3]];
       const auto [left, right] = std::minmax({a.plane.real(), b.plane.real()});
       const auto [bottom, top] = std::minmax({a.plane.imag(), b.plane.imag()});
@@ -46,12 +40,9 @@ bool cross_properly(const RimEdge& e, const RimEdge& f) {
          orientation(f.from, f.to, e.from) * orientation(f.from, f.to, e.to) < 0;
 }
 
-}  // namespace
-
-bool overlaps_in_plane(const ImmersedDisc& disc, const PatchPoints& points, const Region& region) {
-  std::vector<RimEdge> rim = find_rim(disc, points, region);
+/// Whether edges cross whose middles are farther apart than that in the image.
+bool any_cross(std::vector<RimEdge> rim, double far) {
   std::sort(rim.begin(), rim.end(), [](const RimEdge& e, const RimEdge& f) { return e.left < f.left; });
-  const double far = far_share * region.diameter();
   // A sweep from left to right: only edges whose columns overlap can cross.
   std::vector<const RimEdge*> open;
   for (const RimEdge& edge : rim) {
@@ -61,6 +52,30 @@ bool overlaps_in_plane(const ImmersedDisc& disc, const PatchPoints& points, cons
     open.push_back(&edge);
   }
   return false;
+}
+
+}  // namespace
+
+bool overlaps_in_plane(const ImmersedDisc& disc, const PatchPoints& points, const Region& region) {
+  IdVector<PatchVertexId, char> inside(disc.vertex_count(), false);
+  for (PatchVertexId v : ids<PatchVertexId>(disc.vertex_count()))
+    inside[v] = disc.alive(v) && region.contains(points[v].image);
+  IdVector<PatchFaceId, char> covered(disc.faces().size(), false);
+  for (PatchFaceId q : ids<PatchFaceId>(covered.size())) {
+    const auto& v = disc.faces()[q].vertices;
+    covered[q] = disc.alive(q) && inside[v[0]] && inside[v[1]] && inside[v[2]];
+  }
+  return any_cross(find_rim(disc, points, covered), far_share * region.diameter());
+}
+
+bool is_injective(const ImmersedDisc& disc, const PatchPoints& points,
+                  const IdVector<PatchFaceId, char>& among) {
+  for (PatchFaceId q : ids<PatchFaceId>(among.size())) {
+    const auto& v = disc.faces()[q].vertices;
+    if (among[q] && orientation(points[v[0]].plane, points[v[1]].plane, points[v[2]].plane) <= 0)
+      return false;
+  }
+  return !any_cross(find_rim(disc, points, among), -1);
 }
 
 }  // namespace applique

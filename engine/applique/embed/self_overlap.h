@@ -11,4 +11,10 @@ namespace applique {
 /// the image are folds, and no business of this.
 bool overlaps_in_plane(const ImmersedDisc& disc, const PatchPoints& points, const Region& region);
 
+/// Whether the embedding of some of a disc's faces, which hang together, is seen at once to be injective:
+/// none is turned over and their outline does not cross itself. Simple outlines of an immersion go round it
+/// once, so that nothing can lie over anything.
+bool is_injective(const ImmersedDisc& disc, const PatchPoints& points,
+                  const IdVector<PatchFaceId, char>& among);
+
 }  // namespace applique

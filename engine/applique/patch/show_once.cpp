@@ -7,6 +7,7 @@
 #include "applique/base/convex_clip.h"
 #include "applique/base/predicates.h"
 #include "applique/base/triangle_grid.h"
+#include "applique/embed/self_overlap.h"
 #include "applique/quality/map_quality.h"
 
 namespace applique {
@@ -53,6 +54,7 @@ class Overlaps {
 std::size_t show_once(const ImmersedDisc& disc, const PatchPoints& points, const Warp& warp,
                       const Region& region, const std::vector<PatchFaceId>& feature_faces,
                       IdVector<PatchFaceId, char>& shown) {
+  if (is_injective(disc, points, shown)) return 0;
   const auto corners = [&](PatchFaceId q) {
     const auto& v = disc.faces()[q].vertices;
     return Triangle{points[v[0]].plane, points[v[1]].plane, points[v[2]].plane};
