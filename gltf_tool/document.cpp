@@ -199,6 +199,16 @@ std::vector<std::filesystem::path> files_of(const Document& document) {
   return files;
 }
 
+std::optional<std::filesystem::path> missing_file(const Document& document, std::size_t image) {
+  const auto* uri = find(document.json["images"][image], {"uri"});
+  if (uri == nullptr || !uri->is_string()) return std::nullopt;
+  const auto name = uri->get<std::string>();
+  if (!is_relative_uri(name) || document.new_files.contains(name)) return std::nullopt;
+  const std::filesystem::path path = path_of(document, name);
+  if (std::error_code error; std::filesystem::exists(path, error)) return std::nullopt;
+  return path;
+}
+
 Result<Buffers> read_buffers(const Document& document) {
   Buffers buffers;
   const std::size_t count = count_of(document, "buffers");

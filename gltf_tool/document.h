@@ -70,6 +70,9 @@ Result<std::vector<std::uint8_t>> read_uri(const Document& document, const std::
 /// The files that a document's buffers and images are read from, by relative URIs.
 std::vector<std::filesystem::path> files_of(const Document& document);
 
+/// The file of an image that is not there; none when it is, or when the image is no file.
+std::optional<std::filesystem::path> missing_file(const Document& document, std::size_t image);
+
 /// The bytes of an image as stored (PNG, JPEG, …). Errors: as read_uri, model_invalid.
 Result<std::vector<std::uint8_t>> read_image_bytes(const Document& document, std::size_t image);
 

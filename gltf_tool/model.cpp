@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <set>
 #include <span>
 #include <string_view>
 #include <unordered_map>
@@ -381,12 +382,14 @@ Result<Model> decode_model(Document document) {
 Result<Model> load_model(const std::filesystem::path& path) {
   APPLIQUE_TRY(Document document, load_document(path));
   APPLIQUE_TRY(Model model, decode_model(std::move(document)));
-  for (const auto& file : files_of(model.document))
-    if (std::error_code error; !std::filesystem::exists(file, error))
-      model.warnings.push_back(
-          {"file_missing", fmt::format("'{}', which '{}' names, is not there; what is written names it all "
-                                       "the same",
-                                       file.string(), model.document.name)});
+  std::set<std::filesystem::path> missing;
+  for (std::size_t i = 0; i < count_of(model.document, "images"); ++i)
+    if (const auto file = missing_file(model.document, i)) missing.insert(file->lexically_normal());
+  for (const auto& file : missing)
+    model.warnings.push_back(
+        {"file_missing", fmt::format("'{}', which '{}' names, is not there; what is written names it all the "
+                                     "same",
+                                     file.string(), model.document.name)});
   return model;
 }
 

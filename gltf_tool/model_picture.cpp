@@ -50,7 +50,7 @@ Result<std::map<std::size_t, Image>> load_images(const Model& model) {
   std::map<std::size_t, Image> images;
   for (auto& [index, loaded] : loading) {
     auto image = loaded.get();
-    if (!image && (!needed.contains(index) || image.error().code == ErrorCode::file_unreadable)) continue;
+    if (!image && (!needed.contains(index) || missing_file(model.document, index))) continue;
     APPLIQUE_TRY(images[index], std::move(image));
   }
   return images;

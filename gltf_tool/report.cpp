@@ -23,6 +23,8 @@ const char* name_of(Coverage status) {
       return "clipped_by_boundary";
     case Coverage::clipped_by_cover:
       return "clipped_by_cover";
+    case Coverage::clipped_in_plane:
+      return "clipped_in_plane";
     case Coverage::clipped_closed:
       return "clipped_closed";
     case Coverage::clipped_by_limits:

@@ -23,6 +23,12 @@ bool is_sound(const DecalMap& map) {
   return folds(map) == 0 && map.quality.doubled < hardly_doubled && map.status != Coverage::not_converged;
 }
 
+/// Whether it is shown as far as it goes, too, without much of a stretch: then there is nothing to be sought.
+bool is_bearable(const DecalMap& map) {
+  return is_sound(map) && map.quality.left_out < hardly_doubled &&
+         map.quality.l2_stretch < bearably_stretched;
+}
+
 /// What is shown of the region, against how much it is stretched there.
 double worth(const DecalMap& map) {
   return std::min(map.quality.coverage, 1.0) / map.quality.l2_stretch;
@@ -60,11 +66,11 @@ class Attempts {
     rank();
   }
 
-  /// If all fold: the soundest is unfolded, or the next that can be.
+  /// Unfolds those that fold, the soundest first, until one is bearable.
   void unfold() {
     for (DecalSolver& solver : solvers_) {
       if (folds(solver.map()) > 0) solver.unfold();
-      if (folds(solver.map()) == 0) break;
+      if (is_bearable(solver.map())) break;
     }
     rank();
   }
@@ -135,10 +141,7 @@ Result<DecalMap> solve_decal(const SurfaceMesh& surface, const DecalInput& input
   // moved past one another in one sheet: what comes out tells.
   const bool over_itself = options.overlap == Overlap::allow;
   attempts.add({over_itself ? Crossings::overlap : Crossings::one_sheet, true, options.energy});
-  const auto bearable = [](const DecalMap* map) {
-    return map != nullptr && is_sound(*map) && map->quality.l2_stretch < bearably_stretched;
-  };
-  if (attempts.crossed() && !bearable(attempts.best()))
+  if (attempts.crossed() && (attempts.best() == nullptr || !is_bearable(*attempts.best())))
     attempts.add({over_itself ? Crossings::one_sheet : Crossings::overlap, true, options.energy});
   // Parts that only touch in the plane, not on the surface: it may be better without groups.
   const DecalMap* map = attempts.best();

@@ -42,6 +42,7 @@ constexpr double hardly_any = 0.005;          // of a patch's faces
 constexpr int most_refinements = 2;           // after the first of the final patch
 constexpr int free_weighings = 8;             // of a patch's faces
 constexpr double little_regard = 0.1;         // for the surface beyond the image
+constexpr double met_px = 0.01;               // what a feature is off at most
 constexpr double whole = 0.99999;             // of the region
 
 /// Whether the features ask for little enough for the embedding to give it. One that is bent far to meet them
@@ -85,7 +86,7 @@ class DecalSolver::Work {
     APPLIQUE_CHECK(grow(seed_->disc, *growth_));
     StageTimer stage(map_.times.quality);
     describe(seed_->disc, *growth_);
-    return {};
+    return check_met();
   }
 
   void unfold() {
@@ -203,8 +204,11 @@ class DecalSolver::Work {
     Similarity similarity;
     // Places of several turns fall together when all is to be one sheet.
     if (crossed_ && attempt_.crossings == Crossings::one_sheet && coincide(features))
-      return fail(ErrorCode::not_solved,
-                  fmt::format("decal '{}': features lie over one another", input_.name));
+      return fail(
+          ErrorCode::not_solved,
+          fmt::format("decal '{}': features of several turns come to lie over one another; divide the model "
+                      "more finely there, or move them apart",
+                      input_.name));
     if (features.size() == 1) {
       APPLIQUE_TRY(similarity, lone_alignment(surface_, input_, disc, growth.feature_faces()[0], features[0],
                                               targets_[0], plane));
@@ -219,6 +223,21 @@ class DecalSolver::Work {
     for (Vec2& z : features) z = similarity(z);
     for (Vec2& z : plane) z = similarity(z);
     return {};
+  }
+
+  /// Features of several turns may have one triangle of the patch between them: no warp parts these.
+  [[nodiscard]] Result<void> check_met() const {
+    const std::vector<double>& residual = map_.quality.feature_residual;
+    std::vector<std::string> missed;
+    for (std::size_t k = 0; k < residual.size(); ++k)
+      if (!(residual[k] < met_px)) missed.push_back(feature_name(input_, k));
+    if (missed.empty()) return {};
+    return fail(
+        ErrorCode::not_solved,
+        fmt::format("decal '{}': {} cannot be met: parts of the image that lie over one another there "
+                    "share a triangle, and the model has too few; divide it more finely, or move "
+                    "{} apart",
+                    input_.name, fmt::join(missed, ", "), missed.size() > 1 ? "them" : "it"));
   }
 
   static bool coincide(const std::vector<Vec2>& features) {
@@ -347,7 +366,7 @@ class DecalSolver::Work {
       growth.compact(points_);
       APPLIQUE_ASSERT(!checks_patch(options_) || disc.broken_invariant().empty());
     }
-    map_.status = growth.coverage(points_);
+    growth_status_ = growth.coverage(points_);
     return {};
   }
 
@@ -441,9 +460,11 @@ class DecalSolver::Work {
     map_.plane.clear();
     map_.image.clear();
     IdVector<PatchFaceId, char> shown = growth.shown(points_);
-    if (groups_.count == 1 &&
-        show_once(disc, points_, warp_, input_.region, growth.feature_faces(), shown) > 0)
-      map_.status = std::max(map_.status, Coverage::clipped_by_cover);
+    const double left_out =
+        groups_.count == 1 ? show_once(disc, points_, warp_, input_.region, growth.feature_faces(), shown)
+                           : 0;
+    map_.status =
+        left_out > hardly_doubled ? std::max(growth_status_, Coverage::clipped_in_plane) : growth_status_;
     for (PatchFaceId q : ids<PatchFaceId>(shown.size()))
       map_.textured.push_back(map_.patch.faces[q].mesh_face.valid() && shown[q]);
     for (const PatchPoint& point : points_) {
@@ -459,6 +480,7 @@ class DecalSolver::Work {
                                growth.feature_faces());
     map_.quality = measure_quality(surface_, map_.patch, map_.plane, map_.image, map_.textured, map_.warp,
                                    input_.region, map_.influence);
+    map_.quality.left_out = left_out;
     for (std::size_t k = 0; k < targets_.size(); ++k) {
       const auto& corners = disc.faces()[growth.feature_faces()[k]].vertices;
       const std::vector<double> influence =
@@ -517,7 +539,8 @@ class DecalSolver::Work {
   std::vector<Vec2> targets_;  ///< Features in the image, plane units.
   PatchPoints points_;
   Warp warp_;
-  bool settled_ = false;   ///< The patch is not going to grow any more.
+  bool settled_ = false;  ///< The patch is not going to grow any more.
+  Coverage growth_status_ = Coverage::covered;
   bool mirrored_ = false;  ///< By the last embedding, the features run the other way round on the surface.
   std::vector<std::uint32_t> clusters_;  ///< Group by feature, as the image has them; once asked for.
   FeatureGroups groups_;

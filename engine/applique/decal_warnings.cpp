@@ -47,6 +47,12 @@ std::vector<Warning> quality_warnings(const std::string& name, const DecalMap& m
                           ? "; \"overlap\": \"allow\" on the decal lets it go on over itself"
                           : ""));
       break;
+    case Coverage::clipped_in_plane:
+      add("clipped_in_plane",
+          fmt::format("the surface under the region cannot be laid flat beside itself, as over tunnels and "
+                      "deep folds; {:.2f} % of it is shown; make it smaller, or pin it",
+                      percent));
+      break;
     case Coverage::clipped_closed:
       add("clipped_closed",
           fmt::format("the region goes all the way round the surface; {:.2f} % of it is shown", percent));

@@ -221,8 +221,7 @@ ImmersedDisc::Glue Growth::glue(PatchFaceId q, int k, PatchPoints& points,
   if (beyond.valid()) {
     const VertexId from = disc_.mesh_vertex(face.vertices[(k + 1) % 3]);
     const VertexId to = disc_.mesh_vertex(face.vertices[(k + 2) % 3]);
-    const auto& v = surface.vertices(beyond);
-    const VertexId over = *std::find_if(v.begin(), v.end(), [&](VertexId w) { return w != from && w != to; });
+    const VertexId over = surface.vertices(beyond)[surface.neighbour_edge(face.mesh_face, k)];
     apex = apex_in_edge_frame(surface.position(from), surface.position(to), surface.position(over));
   }
   const PatchPoint predicted = {a.plane + (b.plane - a.plane) * apex, a.image + (b.image - a.image) * apex};

@@ -24,6 +24,7 @@ enum class Coverage {
   covered,              ///< The whole region lies on the surface.
   clipped_by_boundary,  ///< The surface ends inside the region.
   clipped_by_cover,     ///< The region meets itself on the surface.
+  clipped_in_plane,     ///< The surface under the region lies over itself once it is flattened.
   clipped_closed,       ///< The patch has gone all the way round a closed surface.
   clipped_by_limits,    ///< The surface leaves the limits of a planar projection.
   not_converged,        ///< Stopped by the limit of solves.

@@ -106,7 +106,8 @@ std::unordered_map<FaceId, std::uint32_t> count_sheets(const SurfaceMesh& mesh,
     const auto corners = mesh.corners(f);
     const double longest = std::max({(corners[1] - corners[0]).norm(), (corners[2] - corners[1]).norm(),
                                      (corners[0] - corners[2]).norm()});
-    const double width = (corners[1] - corners[0]).cross(corners[2] - corners[0]).norm() / longest;
+    const double double_area = (corners[1] - corners[0]).cross(corners[2] - corners[0]).norm();
+    const double width = longest > 0 ? double_area / longest : 0;  // Its least height.
     std::vector<const Mark*> distinct;
     for (const Mark& mark : list)
       if (std::all_of(distinct.begin(), distinct.end(),

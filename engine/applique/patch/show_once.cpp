@@ -1,6 +1,7 @@
 #include "applique/patch/show_once.h"
 
 #include <algorithm>
+#include <functional>
 #include <queue>
 #include <utility>
 
@@ -32,6 +33,7 @@ class Overlaps {
   Overlaps(const Warp& warp, const Region& region) : warp_(warp), region_(region) {}
 
   bool operator()(const Triangle& a, const Triangle& b) const {
+    if (!boxes_meet(a, b)) return false;
     if (has_separating_edge(a, b) || has_separating_edge(b, a)) return false;
     std::vector<Vec2> shared(a.begin(), a.end());
     for (int k = 0; k < 3; ++k) shared = clip_left_of(shared, b[k], b[(k + 1) % 3]);
@@ -45,15 +47,23 @@ class Overlaps {
   }
 
  private:
+  static bool boxes_meet(const Triangle& a, const Triangle& b) {
+    const auto apart = [&](const auto& along) {
+      const auto [least_a, most_a] = std::minmax({along(a[0]), along(a[1]), along(a[2])});
+      const auto [least_b, most_b] = std::minmax({along(b[0]), along(b[1]), along(b[2])});
+      return most_a < least_b || most_b < least_a;
+    };
+    return !apart([](Vec2 z) { return z.real(); }) && !apart([](Vec2 z) { return z.imag(); });
+  }
+
   const Warp& warp_;
   const Region& region_;
 };
 
 }  // namespace
 
-std::size_t show_once(const ImmersedDisc& disc, const PatchPoints& points, const Warp& warp,
-                      const Region& region, const std::vector<PatchFaceId>& feature_faces,
-                      IdVector<PatchFaceId, char>& shown) {
+double show_once(const ImmersedDisc& disc, const PatchPoints& points, const Warp& warp, const Region& region,
+                 const std::vector<PatchFaceId>& feature_faces, IdVector<PatchFaceId, char>& shown) {
   if (is_injective(disc, points, shown)) return 0;
   const auto corners = [&](PatchFaceId q) {
     const auto& v = disc.faces()[q].vertices;
@@ -89,10 +99,15 @@ std::size_t show_once(const ImmersedDisc& disc, const PatchPoints& points, const
     for (const PatchFaceId next : disc.faces()[q].neighbours)
       if (next.valid()) front.emplace(way + std::abs(middle(next) - middle(q)), next);
   }
-  const auto count = [](const auto& faces) { return std::count(faces.begin(), faces.end(), true); };
-  const auto left_out = static_cast<std::size_t>(count(shown) - count(once));
+  double left_out = 0;
+  for (PatchFaceId q : ids<PatchFaceId>(shown.size())) {
+    if (!shown[q] || once[q]) continue;
+    const auto& v = disc.faces()[q].vertices;
+    const Triangle image = {points[v[0]].image, points[v[1]].image, points[v[2]].image};
+    if (orientation(image[0], image[1], image[2]) > 0) left_out += area_in_region(region, image);
+  }
   shown = std::move(once);
-  return left_out;
+  return left_out / region.area();
 }
 
 }  // namespace applique

@@ -36,6 +36,7 @@ struct MapQuality {
   std::uint32_t flipped_image = 0;       ///< Triangles turned over in the image.
   double coverage = 0;                   ///< Share of the region's area that lands on the surface.
   double doubled = 0;                    ///< Share of it that does so more than once; counted again above.
+  double left_out = 0;                   ///< Share of it that is not shown, since it would lie over what is.
   double area = 0;                       ///< Surface area under the region, scene units squared.
   std::vector<double> feature_residual;  ///< Pixels, per feature, in the exact map.
 };

@@ -334,6 +334,7 @@ class ShownParts {
     const double filter = std::ldexp(2.0, footprint_of(map, transfer_.image->levels.size()).level);
     const std::array<double, 2> margin = {std::abs(map.dx[0]) + std::abs(map.dy[0]) + filter,
                                           std::abs(map.dx[1]) + std::abs(map.dy[1]) + filter};
+    if (!std::isfinite(margin[0]) || !std::isfinite(margin[1])) return whole;
     const Box image = Box{{0, 0}, {double(frame.width), double(frame.height)}}.grown(margin);
     const Box box = warped ? in_plane(std::max(margin[0], margin[1])) : image;
     std::vector<FacePlace> polygon;
@@ -356,9 +357,9 @@ class ShownParts {
   }
 
  private:
-  // A box of the plane outside which the warp takes nothing to within `margin` pixels of the image: about
-  // the places that it takes to the rim, and somewhat more, for what bends between these. A flow takes the
-  // inside of the one to the inside of the other.
+  // A box of the plane outside which the warp takes as good as nothing to within `margin` pixels of the
+  // image: about the places that it takes to the rim, and somewhat more, for what bends between these. A flow
+  // takes the inside of the one to the inside of the other.
   const Box& in_plane(double margin) {
     constexpr int parts = 64;                          // Of a side.
     constexpr double more = 0.5;                       // Of the box's size.

@@ -17,8 +17,8 @@ namespace {
 constexpr double spacing = 0.5;            // texels between samples
 constexpr double worn_seam = 8 / 255.0;    // a seam that the texture had before
 constexpr double gutter_stiffness = 0.05;  // of a texel out of sight against one that shows
-constexpr double at_odds = 1 / 255.0;
-constexpr double insistence = 4;  // on a sample, times what it was
+constexpr double at_odds = 1 / 255.0;      // two sides that differ by more
+constexpr double insistence = 4;           // on a sample, times what it was
 constexpr int rounds = 6;    // each is a factorisation; what is still at odds then stays within the bounds
 constexpr int releases = 3;  // rounds in which held values may come back: later on they would go to and fro
 
@@ -267,7 +267,7 @@ class Channel {
     std::vector<std::pair<int, double>> row;  ///< Slots and weights.
     double offset = 0;                        ///< Of the fixed texels.
     double now = 0;
-    double slope = 1;  ///< Stored steps per step of it.
+    double slope = 1;  ///< By how much what is stored changes with it.
   };
   [[nodiscard]] Difference difference(const Sample& sample) const {
     Difference difference;
@@ -300,7 +300,7 @@ class Channel {
   }
 
   /// Stiffens the samples that are still at odds though all their texels may change. The largest difference
-  /// of such a one, in stored steps.
+  /// of such a one, as stored (0 to 1).
   double insist() {
     double worst = 0;
     for (std::size_t i = 0; i < samples_.size(); ++i) {

@@ -44,7 +44,8 @@ std::vector<SeamSample> sample_seams(std::span<const Seam> seams, std::span<cons
 /// texels are out of step have to be smooth along the seam, which smears what crosses it.
 enum class SeamFit {
   sharp,  ///< A texel changes by up to 3/255 where it shows, by up to 16/255 out in the gutter.
-  exact,  ///< By as much as it takes: both sides come within 2/255.
+  exact,  ///< By as much as it takes: both sides come within 2/255 where all texels that take part may
+          ///< change.
 };
 
 /// Brings what a bilinear filter shows on both sides of the seams together, by the smallest changes (least

@@ -1,0 +1,87 @@
+#include "applique/transfer/seams.h"
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include <gtest/gtest.h>
+
+namespace applique {
+namespace {
+
+constexpr int side = 64, edges = 8;
+
+/// A polyline along which two islands of one texture meet, at directions and scales of their own.
+std::vector<Seam> random_seams(std::mt19937& random) {
+  std::uniform_real_distribution<double> unit(0, 1);
+  const double angle = 2 * M_PI * unit(random), scale = 0.1 + 0.9 * unit(random);
+  std::vector<Texel> here, there;
+  for (int i = 0; i <= edges; ++i) {
+    here.push_back({4 + 3.0 * i, 10 + 3 * unit(random)});
+    const double way = 2.5 * scale * (i - edges / 2.0);
+    there.push_back({44 + way * std::cos(angle), 42 + way * std::sin(angle)});
+  }
+  std::vector<Seam> seams;
+  for (int i = 0; i < edges; ++i) {
+    Seam& seam = seams.emplace_back();
+    seam.sides[0] = {0, {here[i], here[i + 1]}, {here[i][0], here[i][1] + 3}};
+    seam.sides[1] = {
+        0, {there[i], there[i + 1]}, {there[i][0] - 3 * std::sin(angle), there[i][1] + 3 * std::cos(angle)}};
+  }
+  return seams;
+}
+
+/// Of 255: the most that both sides differ by.
+double largest_difference(std::span<const Seam> seams, std::span<const SeamTexture> textures,
+                          Encoding encoding) {
+  double largest = 0;
+  for (const SeamSample& sample : sample_seams(seams, textures, encoding))
+    for (std::size_t c = 0; c < 4; ++c)
+      largest = std::max(largest, 255 * std::abs(sample.colours[0][c] - sample.colours[1][c]));
+  return largest;
+}
+
+/// Noise is the worst that can be asked for: neighbours know nothing of one another.
+TEST(Seams, ExactOnesAgreeOnNoise) {
+  std::mt19937 random(1);
+  for (int round = 0; round < 20; ++round) {
+    Image image = make_image(side, side, {0, 0, 0, 0});
+    Image before = image;
+    for (std::size_t i = 0; i < image.rgba.size(); ++i) {
+      image.rgba[i] = static_cast<std::uint16_t>(257 * (random() % 256));
+      before.rgba[i] = image.rgba[i] ^ 0x101;  // All are changed.
+    }
+    const std::vector<Seam> seams = random_seams(random);
+    const std::vector<SeamTexture> textures = {
+        {&image, &before, WrapMode::repeat, WrapMode::repeat, {true, true, true, true}}};
+    for (const Encoding encoding : {Encoding::colour, Encoding::data}) {
+      EXPECT_GT(largest_difference(seams, textures, encoding), 20);
+      const Image noise = image;
+      join_seams(seams, textures, encoding, SeamFit::exact);
+      EXPECT_LT(largest_difference(seams, textures, encoding), 2) << round;
+      image = noise;
+    }
+  }
+}
+
+/// What the decals did not change is not theirs to move.
+TEST(Seams, OnlyChangedTexelsMove) {
+  std::mt19937 random(2);
+  Image image = make_image(side, side, {0, 0, 0, 0});
+  for (std::uint16_t& value : image.rgba) value = static_cast<std::uint16_t>(257 * (random() % 256));
+  Image before = image;
+  for (std::size_t i = 0; i < image.rgba.size(); ++i)
+    if (i / 4 % 2 == 0) before.rgba[i] ^= 0x101;
+  const Image now = image;
+  const std::vector<Seam> seams = random_seams(random);
+  const std::vector<SeamTexture> textures = {
+      {&image, &before, WrapMode::repeat, WrapMode::repeat, {true, true, true, false}}};
+  join_seams(seams, textures, Encoding::colour, SeamFit::exact);
+  for (std::size_t i = 0; i < image.rgba.size(); ++i)
+    if (i / 4 % 2 == 1 || i % 4 == 3) {
+      ASSERT_EQ(image.rgba[i], now.rgba[i]) << i;
+    }
+}
+
+}  // namespace
+}  // namespace applique
