@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include "applique/transfer/divide.h"
 #include "applique/transfer/raster.h"
 #include "applique/transfer/refine.h"
 
@@ -257,7 +258,7 @@ TEST(TransferOnCpu, OnlyWhatShowsTheImageOfALargeFaceIsDrawn) {
     const bool warped = round >= 6;
     const DecalImage& image = warped ? soft : sharp;
     const Warp warp = random_warp(random, 3 + round % 3, 1);
-    const double angle = 6.3 * unit(random), size = (warped ? 100 : 16) + 30 * unit(random);
+    const double angle = 6.3 * unit(random), size = (warped ? 64 : 16) + (warped ? 6 : 30) * unit(random);
     const std::array<double, 2> middle = {120 + 200 * unit(random), 120 + 200 * unit(random)};
     const auto pixel_at = [&](const Texel& t) {
       const double x = (t[0] - middle[0]) / size, y = (t[1] - middle[1]) / size;
@@ -278,6 +279,7 @@ TEST(TransferOnCpu, OnlyWhatShowsTheImageOfALargeFaceIsDrawn) {
     };
     Transfer large, small;
     if (warped) large.warp = small.warp = &warp;
+    if (warped) large.gutter = small.gutter = 2;
     large.image = small.image = &image;
     constexpr double low = 4, width = 496;
     square(low, low, width, large.faces);
@@ -303,6 +305,37 @@ TEST(TransferOnCpu, OnlyWhatShowsTheImageOfALargeFaceIsDrawn) {
     }
     EXPECT_GT(painted, 200);
   }
+}
+
+// The parts of divided faces make up these, and lie where the warp has them; what is small or linear stays.
+TEST(TransferOnCpu, LargeBentFacesAreDivided) {
+  SyntheticOptions options;
+  options.texture = 600;
+  options.image = 500;
+  options.features = 4;
+  options.grid = 2;
+  options.nonlinear = 1;
+  const SyntheticTransfer synthetic = synthetic_transfer(5, options);
+  Transfer transfer = synthetic.transfer;
+  const auto area = [](const Transfer& of) {
+    double sum = 0;
+    for (const TransferFace& face : of.faces) {
+      const auto& t = face.texel;
+      sum += 0.5 *
+             std::abs((t[1][0] - t[0][0]) * (t[2][1] - t[0][1]) - (t[1][1] - t[0][1]) * (t[2][0] - t[0][0]));
+    }
+    return sum;
+  };
+  const auto divided = divide_faces(transfer);
+  ASSERT_TRUE(divided.has_value());
+  EXPECT_GT(divided->faces.size(), 8 * transfer.faces.size());
+  EXPECT_NEAR(area(*divided), area(transfer), 1e-6 * area(transfer));
+  for (const TransferFace& face : divided->faces)
+    for (std::size_t k = 0; k < 3; ++k)
+      EXPECT_LT(std::abs((*transfer.warp)(face.plane[k]) - face.image[k]), 1e-9);
+  EXPECT_FALSE(divide_faces(*divided).has_value());
+  for (TransferFace& face : transfer.faces) face.linear = true;
+  EXPECT_FALSE(divide_faces(transfer).has_value());
 }
 
 TEST(TransferOnCpu, InfluenceIsInterpolatedBetweenTheCorners) {

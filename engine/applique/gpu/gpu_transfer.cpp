@@ -6,6 +6,7 @@
 #include <cstring>
 #include <tuple>
 
+#include "applique/transfer/divide.h"
 #include "applique/transfer/raster.h"
 #include "applique/transfer/refine.h"
 
@@ -242,6 +243,7 @@ Result<const ComputePipeline*> GpuTransfer::shading_pipeline(Shading shading, st
 }
 
 Result<TransferResult> GpuTransfer::run(const Transfer& transfer, Image& texture, bool keep_samples) {
+  if (const auto divided = divide_faces(transfer)) return run(*divided, texture, keep_samples);
   const std::vector<std::uint32_t> sheets = sheets_of(transfer);
   Run run{transfer, texture, keep_samples, working_bits(texture, sheets.size())};
   run.shown = shown_parts(transfer);

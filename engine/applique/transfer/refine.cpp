@@ -54,6 +54,20 @@ double deviation(int fine, const std::vector<Pixel>& points) {
   return largest;
 }
 
+// How far all the points are from the image at least, less what the filter of a texel may reach, where
+// `texels` lie between them. Below 0 where they may show it.
+double beyond_image(const ImageFrame& frame, const std::vector<Pixel>& points, double texels) {
+  double left = HUGE_VAL, right = -HUGE_VAL, top = HUGE_VAL, bottom = -HUGE_VAL;
+  for (const Pixel& pixel : points) {
+    left = std::min(left, pixel.x);
+    right = std::max(right, pixel.x);
+    top = std::min(top, pixel.y);
+    bottom = std::max(bottom, pixel.y);
+  }
+  const double gap = std::max({left - frame.width, -right, top - frame.height, -bottom});
+  return gap - 4 - 4 * std::hypot(right - left, bottom - top) / std::sqrt(texels);
+}
+
 RefinedFace refine_face(const Transfer& transfer, std::size_t face, const TexelBounds& shown) {
   const auto& t = transfer.faces[face].texel;
   const double texels = std::min(
@@ -70,7 +84,9 @@ RefinedFace refine_face(const Transfer& transfer, std::size_t face, const TexelB
   for (int cells = 1; cells < finest; cells *= 2) {
     refined.points = doubled(transfer, face, cells, refined.points);
     const double apart = deviation(2 * cells, refined.points);
-    if (cells >= coarsest && apart <= coarse_tolerance) {
+    // Far from the image it makes no difference where they are exactly.
+    const double beyond = beyond_image(transfer.image->frame, refined.points, texels);
+    if (cells >= coarsest && apart <= std::max(coarse_tolerance, beyond / 4)) {
       refined.cells = 2 * cells;
       return refined;
     }

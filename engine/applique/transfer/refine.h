@@ -26,10 +26,10 @@ struct RefinedFace {
 Pixel warp_in_face(const Transfer& transfer, std::size_t face, double u, double v);
 
 /// Cuts every face that is not linear so finely that interpolating between `points` stays within 0.02 pixel
-/// of the warp: the grid of half as many cells is within 0.04 pixel at the midpoints of all its edges, and
-/// halving quarters the error of a smooth map. A face stays uncut where that would take more points than it
-/// has texels in its part of `shown` (raster.h), or more than 1024 cells a side, or is sure to: there, the
-/// warp at each texel is cheaper. One entry per face of the transfer.
+/// of the warp, where the image is: the grid of half as many cells is within 0.04 pixel at the midpoints of
+/// all its edges, and halving quarters the error of a smooth map. A face stays uncut where that would take
+/// more points than it has texels in its part of `shown` (raster.h), or more than 1024 cells a side, or is
+/// sure to: there, the warp at each texel is cheaper. One entry per face of the transfer.
 std::vector<RefinedFace> refine_faces(const Transfer& transfer,
                                       std::span<const std::optional<TexelBounds>> shown);
 

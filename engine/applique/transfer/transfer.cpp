@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "applique/base/parallel.h"
+#include "applique/transfer/divide.h"
 #include "applique/transfer/raster.h"
 #include "applique/transfer/refine.h"
 
@@ -216,6 +217,7 @@ void composite_sheet(const Transfer& transfer, std::uint32_t sheet,
 }  // namespace
 
 TransferResult transfer_on_cpu(const Transfer& transfer, Image& texture, bool keep_samples) {
+  if (const auto divided = divide_faces(transfer)) return transfer_on_cpu(*divided, texture, keep_samples);
   const auto shown = shown_parts(transfer);
   const std::vector<RefinedFace> refined = refine_faces(transfer, shown);
   const std::vector<std::uint32_t> sheets = sheets_of(transfer);
