@@ -16,7 +16,8 @@ constexpr double bearably_stretched = 2;  // L2, in one sheet: of an image that 
 constexpr double much_stretched = 1.1;    // L2
 constexpr double usual_margin = 0.08;     // of a patch's faces
 constexpr double nearly_all = 0.99;       // of the region
-constexpr double less_isometry = 0.6;     // where all is much stretched
+constexpr double less_area[] = {0.5, 0.25, 0.1};  // of a patch that folds
+constexpr double less_isometry = 0.6;             // where all is much stretched
 
 /// Whether a map is injective.
 bool is_sound(const DecalMap& map) {
@@ -86,6 +87,8 @@ class Attempts {
 
   /// None while all have failed.
   [[nodiscard]] const DecalMap* best() const { return solvers_.empty() ? nullptr : &solvers_.front().map(); }
+  /// Of its patch, scene units squared.
+  [[nodiscard]] double best_area() const { return solvers_.front().patch_area(); }
   /// Whether the seed's paths crossed in any of them.
   [[nodiscard]] bool crossed() const { return crossed_; }
 
@@ -149,6 +152,15 @@ Result<DecalMap> solve_decal(const SurfaceMesh& surface, const DecalInput& input
       (folds(*map) > 0 || map->quality.l2_stretch > much_stretched))
     attempts.add({Crossings::one_sheet, false, options.energy});
   attempts.unfold();
+  // All of a long closed surface, flattened, is beyond what numbers can tell apart: less of it is not. Where
+  // there are several features, it is they that fold the image.
+  map = attempts.best();
+  if (map != nullptr && input.features.size() == 1 && folds(*map) > 0) {
+    const double area = attempts.best_area();
+    for (const double share : less_area)
+      attempts.add({Crossings::one_sheet, true, options.energy, share * area});
+    attempts.unfold();
+  }
   // Where all is much stretched, lengths that cannot be kept lead the growth less astray when they count
   // less.
   map = attempts.best();

@@ -83,6 +83,7 @@ class DecalSolver::Work {
     APPLIQUE_TRY(seed_, make_seed());
     for (const Vec2 z : seed_->image) points_.push_back({Vec2(), z});
     growth_.emplace(seed_->disc, seed_->feature_faces, input_.region, seed_->sheets);
+    growth_->set_most_area(attempt_.most_area);
     APPLIQUE_CHECK(grow(seed_->disc, *growth_));
     StageTimer stage(map_.times.quality);
     describe(seed_->disc, *growth_);
@@ -111,6 +112,7 @@ class DecalSolver::Work {
   }
 
   [[nodiscard]] const DecalMap& map() const { return map_; }
+  [[nodiscard]] double patch_area() const { return growth_->area(); }
   [[nodiscard]] bool crossed() const { return crossed_; }
   [[nodiscard]] SolveTrace& trace() { return trace_; }
 
@@ -581,6 +583,10 @@ DecalMap DecalSolver::finish() {
 
 const DecalMap& DecalSolver::map() const {
   return work_->map();
+}
+
+double DecalSolver::patch_area() const {
+  return work_->patch_area();
 }
 
 bool DecalSolver::crossed() const {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <memory>
 
 #include "applique/base/error.h"
@@ -13,6 +14,7 @@ struct Attempt {
   Crossings crossings;  ///< What paths are that cross on the surface.
   bool grouping;        ///< Whether features may move the image in groups.
   Energy energy;        ///< Of the grown patch.
+  double most_area = std::numeric_limits<double>::infinity();  ///< Of the patch, scene units squared.
 };
 
 /// One attempt at a decal, with all that it takes: the seed, the growth, the embeddings and warps on the way.
@@ -36,6 +38,8 @@ class DecalSolver {
 
   /// As it is; without warnings.
   [[nodiscard]] const DecalMap& map() const;
+  /// Of the patch, scene units squared.
+  [[nodiscard]] double patch_area() const;
   /// Whether the seed's paths crossed, be it in one sheet.
   [[nodiscard]] bool crossed() const;
   /// What happened, if the options ask for a trace.

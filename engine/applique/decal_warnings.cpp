@@ -73,8 +73,9 @@ std::vector<Warning> quality_warnings(const std::string& name, const DecalMap& m
     add("flipped_triangles",
         fmt::format("{} triangles are turned over; {}",
                     std::max(map.quality.flipped_plane, map.quality.flipped_image),
-                    is_rival(options.method)
-                        ? "make it smaller, or leave out \"method\""
+                    is_rival(options.method) ? "make it smaller, or leave out \"method\""
+                    : map.quality.feature_residual.size() == 1
+                        ? "make it smaller"
                         : "move the features nearer to where the image wants them, or add some"));
   if (map.quality.doubled > hardly_doubled)
     add("overlapping_map",

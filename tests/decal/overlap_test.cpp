@@ -229,6 +229,24 @@ TEST(Overlap, ADecalOverTunnelsIsShownOnce) {
   EXPECT_GT(clipped, 2);
 }
 
+/// All of a closed surface but a face is flattened, however long it is.
+TEST(Overlap, ADecalLargerThanALongClosedSurfaceTurnsNothingOver) {
+  for (const double length : {1.0, 20.0, 60.0, 150.0}) {
+    shapes::Soup soup = shapes::sphere(4, 1);
+    for (Vec3& p : soup.positions) p.x() *= length;
+    const SurfaceMesh surface = soup.weld();
+    constexpr ImageFrame frame{256, 256};
+    DecalInput input{"test",
+                     *Region::from_contour({{8, 8}, {248, 8}, {248, 248}, {8, 248}}, frame),
+                     {{{128, 128}, shapes::nearest(surface, {0.9 * length, 0, 1}), 0}},
+                     {}};
+    input.lone = LoneFrame{2.5 * length, Vec3(0, 1, 0)};
+    const auto map = solve_decal(surface, input);
+    ASSERT_TRUE(map.has_value()) << map.error().message;
+    expect_exact_and_unfolded(*map);
+  }
+}
+
 TEST(Overlap, StopsAtItselfUnlessAllowed) {
   const SurfaceMesh surface = shapes::cylinder(96, 40, 1, 4).weld();
   // Pinned on its first third only, the belt grows round and meets itself.

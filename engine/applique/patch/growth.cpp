@@ -22,6 +22,12 @@ Vec2 apex_in_edge_frame(const Vec3& a, const Vec3& b, const Vec3& apex) {
   return {side.dot(edge) / length2, -side.cross(edge).norm() / length2};
 }
 
+double area_of(const BridgedSurface& surface, FaceId f) {
+  const auto& v = surface.vertices(f);
+  const Vec3 origin = surface.position(v[0]);
+  return 0.5 * (surface.position(v[1]) - origin).cross(surface.position(v[2]) - origin).norm();
+}
+
 }  // namespace
 
 Growth::Growth(ImmersedDisc& disc, std::vector<PatchFaceId> feature_faces, const Region& region,
@@ -228,6 +234,12 @@ ImmersedDisc::Glue Growth::glue(PatchFaceId q, int k, PatchPoints& points,
   if (beyond.valid() && cover_limit_ > 1 && disc_.cover(beyond) > 0 &&
       covered_nearby(beyond, {a.image, b.image, predicted.image}, points))
     return ImmersedDisc::Glue::covered;
+  if (beyond.valid() && std::isfinite(most_area_)) {
+    const double grown = area_ + area_of(surface, beyond);
+    is_full_ = is_full_ || grown > most_area_;
+    if (grown > most_area_) return ImmersedDisc::Glue::covered;
+    area_ = grown;
+  }
   const ImmersedDisc::GlueResult result = disc_.glue(q, k, cover_limit_);
   if (result.outcome != ImmersedDisc::Glue::glued) return result.outcome;
   if (cover_limit_ > 1) over_[beyond].push_back(result.face);
@@ -240,12 +252,20 @@ ImmersedDisc::Glue Growth::glue(PatchFaceId q, int k, PatchPoints& points,
   return result.outcome;
 }
 
+double Growth::area() const {
+  double area = 0;
+  for (PatchFaceId q : ids<PatchFaceId>(disc_.faces().size()))
+    if (disc_.alive(q)) area += area_of(disc_.surface(), disc_.faces()[q].mesh_face);
+  return area;
+}
+
 std::size_t Growth::grow(PatchPoints& points, IdVector<PatchVertexId, char>& inside, double scale,
                          const Limits& limits) {
   const auto faces = static_cast<double>(disc_.live_faces());
   const auto most = static_cast<std::size_t>(limits.growth * faces);
   const int rings = std::max(limits.rings, static_cast<int>(limits.share * std::sqrt(faces)));
   note_cover();
+  if (std::isfinite(most_area_)) area_ = area();
   std::vector<PatchFaceId> candidates;
   const IdVector<PatchFaceId, char> shown = this->shown(points);
   for (PatchFaceId q : ids<PatchFaceId>(shown.size())) {
@@ -273,15 +293,9 @@ std::size_t Growth::fill_pockets(PatchPoints& points, IdVector<PatchVertexId, ch
   note_cover();
   const BridgedSurface& surface = disc_.surface();
   const double longest_rim = longest_pocket_rim * region_.diameter() / scale;
-  const auto area_of = [&](FaceId f) {
-    const auto& v = surface.vertices(f);
-    return 0.5 * (surface.position(v[1]) - surface.position(v[0]))
-                     .cross(surface.position(v[2]) - surface.position(v[0]))
-                     .norm();
-  };
   double most = 0;
   for (PatchFaceId q : ids<PatchFaceId>(disc_.faces().size()))
-    if (disc_.alive(q)) most += largest_pocket * area_of(disc_.faces()[q].mesh_face);
+    if (disc_.alive(q)) most += largest_pocket * area_of(surface, disc_.faces()[q].mesh_face);
   enum class Mark { pocket, open };
   std::unordered_map<FaceId, Mark> marks;
   const std::size_t count = disc_.faces().size();
@@ -311,7 +325,7 @@ std::size_t Growth::fill_pockets(PatchPoints& points, IdVector<PatchVertexId, ch
             open = mark->second == Mark::open;
           }
         }
-        area += area_of(part[i]);
+        area += area_of(surface, part[i]);
         open = open || area > most || rim > longest_rim;
       }
       if (open)
@@ -362,10 +376,10 @@ Coverage Growth::coverage(const PatchPoints& points) const {
       const PatchVertexId a = face.vertices[(k + 1) % 3], b = face.vertices[(k + 2) % 3];
       if (!region_.meets_segment(points[a].image, points[b].image)) continue;
       const FaceId beyond = disc_.surface().neighbour(face.mesh_face, k);
-      const Coverage here = !beyond.valid()                ? Coverage::clipped_by_boundary
-                            : disc_.cover(beyond) > 0      ? Coverage::clipped_by_cover
-                            : disc_.boundary_length() <= 3 ? Coverage::clipped_closed
-                                                           : Coverage::not_converged;
+      const Coverage here = !beyond.valid()                            ? Coverage::clipped_by_boundary
+                            : disc_.cover(beyond) > 0                  ? Coverage::clipped_by_cover
+                            : is_full_ || disc_.boundary_length() <= 3 ? Coverage::clipped_closed
+                                                                       : Coverage::not_converged;
       worst = std::max(worst, here);
     }
   }

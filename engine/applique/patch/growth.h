@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <limits>
 #include <span>
 #include <unordered_map>
 #include <vector>
@@ -73,6 +74,11 @@ class Growth {
   void set_cover_limit(std::uint32_t cover_limit) { cover_limit_ = cover_limit; }
   [[nodiscard]] std::uint32_t cover_limit() const { return cover_limit_; }
 
+  /// No face is glued any more that would make the patch larger than this, scene units squared.
+  void set_most_area(double most_area) { most_area_ = most_area; }
+  /// Of the patch, scene units squared.
+  [[nodiscard]] double area() const;
+
   /// Drops dead ids; `points` follows.
   void compact(PatchPoints& points);
 
@@ -108,6 +114,9 @@ class Growth {
   std::vector<PatchFaceId> feature_faces_;
   const Region& region_;
   std::uint32_t cover_limit_;
+  double most_area_ = std::numeric_limits<double>::infinity();
+  double area_ = 0;       ///< Kept while most_area_ is finite.
+  bool is_full_ = false;  ///< A face was not glued for it.
   std::unordered_map<FaceId, std::uint32_t> peeled_;
   std::unordered_map<FaceId, std::vector<PatchFaceId>>
       over_;  ///< Kept while cover_limit_ > 1; may name the dead.
