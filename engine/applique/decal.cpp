@@ -63,7 +63,10 @@ class Attempts {
     DecalSolver solver(surface_, input_, options_, attempt);
     outcome_ = solver.run();
     crossed_ = crossed_ || solver.crossed();
-    if (outcome_) solvers_.push_back(std::move(solver));
+    if (outcome_)
+      solvers_.push_back(std::move(solver));
+    else if (outcome_.error().code == ErrorCode::not_solved)
+      unmet_ = outcome_;
     rank();
   }
 
@@ -80,6 +83,8 @@ class Attempts {
   Result<DecalMap> finish() {
     if (solvers_.empty()) return tl::unexpected(outcome_.error());
     DecalSolver& solver = solvers_.front();
+    // Why it cannot lie over itself, as its features ask, says more than a map that folds instead.
+    if (folds(solver.map()) > 0) APPLIQUE_CHECK(unmet_);
     APPLIQUE_CHECK(check_coverage(input_, solver.map().quality.coverage));
     if (options_.trace != nullptr) *options_.trace = std::move(solver.trace());
     return solver.finish();
@@ -104,6 +109,7 @@ class Attempts {
   const SolveOptions& options_;
   std::vector<DecalSolver> solvers_;  ///< That have not failed, the soundest first.
   Result<void> outcome_;              ///< Of the last.
+  Result<void> unmet_;                ///< Of the last that was not solved.
   bool crossed_ = false;
 };
 

@@ -127,7 +127,15 @@ class DecalSolver::Work {
     if (seed) crossed_ = seed->crossed;
     if (seed && options_.trace != nullptr) trace_.paths = seed->paths;
     if (seed) return std::move(*seed);
-    const auto [i, j] = seed.error().disconnected;
+    const auto [i, j] = seed.error().pair;
+    if (seed.error().crowded) {
+      crossed_ = true;
+      return fail(
+          ErrorCode::not_solved,
+          fmt::format("decal '{}': the way from {} to {} is crowded with other parts of the image; divide "
+                      "the model more finely there, or move them apart",
+                      input_.name, feature_name(input_, i), feature_name(input_, j)));
+    }
     return fail(ErrorCode::features_disconnected,
                 fmt::format("decal '{}': no way along the surface from {} to {}", input_.name,
                             feature_name(input_, i), feature_name(input_, j)));

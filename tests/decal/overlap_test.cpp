@@ -183,6 +183,32 @@ TEST(Overlap, FeaturesOnPolesOfFewTrianglesAreMetOrNamed) {
           ++named;
         }
       }
+  // The turns' paths run along the rims of caps, and meet over their middles.
+  for (const int sides : {3, 8, 16}) {
+    shapes::Soup soup = shapes::cylinder(sides, 1, 1, 6);
+    for (const double z : {0.0, 6.0}) {
+      const auto middle = static_cast<std::uint32_t>(soup.positions.size());
+      soup.positions.push_back({0, 0, z});
+      for (int i = 0; i < sides; ++i) {
+        const std::uint32_t a = (z > 0 ? sides + 1 : 0) + i, b = a + 1;
+        soup.triangles.push_back(z > 0 ? std::array{middle, a, b} : std::array{middle, b, a});
+      }
+    }
+    const SurfaceMesh surface = soup.weld();
+    std::vector<Pin> pins;
+    for (int k = 0; k <= 16; ++k) {
+      const double angle = 2 * pi * 2.5 * (k + 0.1) / 16;
+      pins.push_back({{50 + 1100.0 * k / 16, 50}, {std::cos(angle), std::sin(angle), 2 + 0.06 * k}});
+    }
+    SolveOptions options;
+    options.overlap = Overlap::allow;
+    const auto map = solve_decal(surface, decal(surface, ribbon(), pins), options);
+    if (map)
+      expect_exact_and_unfolded(*map);
+    else
+      EXPECT_NE(map.error().message.find("divide"), std::string::npos) << map.error().message;
+    named += !map;
+  }
   EXPECT_GE(met, 16);
   EXPECT_GE(named, 1);
 }

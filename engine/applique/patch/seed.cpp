@@ -39,7 +39,7 @@ tl::expected<std::vector<Strand>, SeedFailure> lay_strands(const SurfaceMesh& me
       const std::uint32_t to = tree[e][0] == from ? tree[e][1] : tree[e][0];
       if (placed[to]) continue;
       Strand strand{e, from, to, shortest_path(mesh, features[from].surface, features[to].surface), {}, 0};
-      if (strand.path.empty()) return tl::unexpected(SeedFailure{tree[e]});
+      if (strand.path.empty()) return tl::unexpected(SeedFailure{tree[e], false});
       placed[to] = true;
       queue.push_back(to);
       strands.push_back(std::move(strand));
@@ -129,7 +129,8 @@ class Thickening {
     disc_.pin(PatchFaceId(0));
   }
 
-  /// Grows the disc along the strand, from the patch face `start`, and returns the face over its end, pinned.
+  /// Grows the disc along the strand, from the patch face `start`, and returns the face over its end, pinned;
+  /// invalid when others' faces leave no way there.
   /// Where the way on is covered already, by a branch of the same sheet that came this way, the walk goes on
   /// from that branch's vertex.
   PatchFaceId add_strand(PatchFaceId start, const Strand& strand) {
@@ -143,15 +144,14 @@ class Thickening {
       if (i + 1 == strand.path.size()) break;
       const PatchVertexId next = disc_.neighbour_over(at, strand.path[i + 1]);
       at = next.valid() ? next : vertex_over(strand.path[i + 1], strand.image[i + 1]);
-      APPLIQUE_ASSERT(at.valid());  // a face beside the path's edge is glued, or covered and so in the disc
+      if (!at.valid()) return {};
     }
     const SeedFeature& end = features_[strand.to];
     PatchFaceId found;
     for (PatchFaceId q : disc_.fan(at))
       if (disc_.faces()[q].mesh_face == end.surface.face) found = q;
     if (!found.valid()) found = face_over(end.surface.face, end.image);
-    APPLIQUE_ASSERT(found.valid());
-    disc_.pin(found);
+    if (found.valid()) disc_.pin(found);
     return found;
   }
 
@@ -285,8 +285,10 @@ tl::expected<Seed, SeedFailure> build_seed(BridgedSurface& surface, std::span<co
   Thickening thickening(surface, features, std::move(sheets), far);
   std::vector<PatchFaceId> feature_faces(features.size());
   feature_faces[0] = PatchFaceId(0);
-  for (const Strand& strand : *strands)
+  for (const Strand& strand : *strands) {
     feature_faces[strand.to] = thickening.add_strand(feature_faces[strand.from], strand);
+    if (!feature_faces[strand.to].valid()) return tl::unexpected(SeedFailure{{strand.from, strand.to}, true});
+  }
   thickening.add_ring();
   Seed seed = std::move(thickening).finish(std::move(feature_faces));
   seed.crossed = crossed;

@@ -41,9 +41,11 @@ enum class Crossings { overlap, one_sheet };
 
 /// `tree` spans the features. Paths that come near one another on the surface are one sheet, in which every
 /// face is covered once, unless they are far apart in the image: then, with Crossings::overlap, each has a
-/// sheet of its own there. Fails, naming a pair, only when two features lie on parts that are not connected.
+/// sheet of its own there. Fails, naming a pair, when two features lie on parts that are not connected, or
+/// when the way from one to the other is so crowded with others' that it has no triangles of its own.
 struct SeedFailure {
-  FeaturePair disconnected;
+  FeaturePair pair;
+  bool crowded = false;
 };
 tl::expected<Seed, SeedFailure> build_seed(BridgedSurface& surface, std::span<const SeedFeature> features,
                                            std::span<const FeaturePair> tree,
