@@ -206,7 +206,7 @@ class Resolver {
                                                       const ModelMaterial& material) {
     const auto [lower_u, upper_u] = std::minmax({t[0][0], t[1][0], t[2][0]});
     const auto [lower_v, upper_v] = std::minmax({t[0][1], t[1][1], t[2][1]});
-    const double area = (t[1][0] - t[0][0]) * (t[2][1] - t[0][1]) - (t[1][1] - t[0][1]) * (t[2][0] - t[0][0]);
+    const double area = doubled_area(t);
     if (area == 0) return std::nullopt;
     for (const double u : wrapped(uv[0], material.wrap_u, lower_u, upper_u))
       for (const double v : wrapped(uv[1], material.wrap_v, lower_v, upper_v)) {

@@ -46,9 +46,4 @@ void for_each_texel(const std::array<Texel, 3>& corners, const Visit& visit) {
   }
 }
 
-/// Twice the signed area.
-inline double doubled_area(const std::array<Texel, 3>& t) {
-  return (t[1][0] - t[0][0]) * (t[2][1] - t[0][1]) - (t[2][0] - t[0][0]) * (t[1][1] - t[0][1]);
-}
-
 }  // namespace applique

@@ -319,11 +319,7 @@ TEST(TransferOnCpu, LargeBentFacesAreDivided) {
   Transfer transfer = synthetic.transfer;
   const auto area = [](const Transfer& of) {
     double sum = 0;
-    for (const TransferFace& face : of.faces) {
-      const auto& t = face.texel;
-      sum += 0.5 *
-             std::abs((t[1][0] - t[0][0]) * (t[2][1] - t[0][1]) - (t[1][1] - t[0][1]) * (t[2][0] - t[0][0]));
-    }
+    for (const TransferFace& face : of.faces) sum += 0.5 * std::abs(doubled_area(face.texel));
     return sum;
   };
   const auto divided = divide_faces(transfer);

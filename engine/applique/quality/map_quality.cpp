@@ -127,9 +127,11 @@ MapQuality measure_quality(const SurfaceMesh& surface, const Patch& patch,
           flipped || turns_over(warp, flat, {influence_at(v[0]), influence_at(v[1]), influence_at(v[2])});
       continue;
     }
+    const double whole = 0.5 * cross(p[1] - p[0], p[2] - p[0]);
+    if (!(whole > 0)) continue;  // Too thin for its area to be told.
     const std::array<Vec3, 3> corners = surface.corners(patch.faces[q].mesh_face);
     const double inside = area_in_region(region, p);
-    const double share = inside / (0.5 * cross(p[1] - p[0], p[2] - p[0]));
+    const double share = inside / whole;
     image_area += inside;
     const double area = share * 0.5 * (corners[1] - corners[0]).cross(corners[2] - corners[0]).norm();
     if (area > 0) measured.push_back({singular_values(corners, p), area});

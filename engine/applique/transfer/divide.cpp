@@ -24,8 +24,7 @@ int cuts_of(const TransferFace& face, const std::optional<TexelBounds>& shown) {
   const auto& t = face.texel;
   const auto [left, right] = std::minmax({t[0][0], t[1][0], t[2][0]});
   const auto [top, bottom] = std::minmax({t[0][1], t[1][1], t[2][1]});
-  const double texels =
-      0.5 * std::abs((t[1][0] - t[0][0]) * (t[2][1] - t[0][1]) - (t[1][1] - t[0][1]) * (t[2][0] - t[0][0]));
+  const double texels = 0.5 * std::abs(doubled_area(t));
   if (!(texels > 4 * part_texels) || area_of(*shown) < mostly_shown * (right - left) * (bottom - top))
     return 1;
   int cuts = 1;

@@ -6,6 +6,8 @@
 #include <optional>
 #include <set>
 
+#include "applique/base/convex_clip.h"
+
 namespace applique {
 namespace {
 
@@ -212,10 +214,6 @@ void add_jobs(FixedCorners corners, const TexelBounds& within, std::uint32_t key
   }
 }
 
-double triangle_area2(const std::array<Texel, 3>& c) {
-  return (c[1][0] - c[0][0]) * (c[2][1] - c[0][1]) - (c[1][1] - c[0][1]) * (c[2][0] - c[0][0]);
-}
-
 std::array<Texel, 3> rounded(std::array<Texel, 3> corners) {
   for (Texel& corner : corners) {
     for (double& value : corner) value = static_cast<double>(std::llround(value * subtexels)) / subtexels;
@@ -226,7 +224,7 @@ std::array<Texel, 3> rounded(std::array<Texel, 3> corners) {
 AffineMap affine_map(const std::array<Texel, 3>& corners,
                      const std::array<std::array<double, 2>, 3>& values) {
   AffineMap map{};
-  const double area = triangle_area2(corners);
+  const double area = doubled_area(corners);
   const double ux = corners[1][0] - corners[0][0], uy = corners[1][1] - corners[0][1];
   const double vx = corners[2][0] - corners[0][0], vy = corners[2][1] - corners[0][1];
   for (int axis = 0; axis < 2; ++axis) {
@@ -278,20 +276,16 @@ struct FacePlace {
 // The part of a convex polygon where sign * at[axis] <= limit.
 std::vector<FacePlace> clip(const std::vector<FacePlace>& polygon, std::size_t axis, double sign,
                             double limit) {
-  std::vector<FacePlace> kept;
-  for (std::size_t i = 0; i < polygon.size(); ++i) {
-    const FacePlace &from = polygon[i], &to = polygon[(i + 1) % polygon.size()];
-    const double before = limit - sign * from.at[axis], after = limit - sign * to.at[axis];
-    if (before >= 0) kept.push_back(from);
-    if ((before < 0) == (after < 0)) continue;
-    const double t = before / (before - after);
-    FacePlace& place = kept.emplace_back();
-    for (std::size_t c = 0; c < 2; ++c) {
-      place.texel[c] = from.texel[c] + t * (to.texel[c] - from.texel[c]);
-      place.at[c] = from.at[c] + t * (to.at[c] - from.at[c]);
-    }
-  }
-  return kept;
+  return clip_convex(
+      polygon, [&](const FacePlace& place) { return limit - sign * place.at[axis]; },
+      [](const FacePlace& from, const FacePlace& to, double t) {
+        FacePlace place;
+        for (std::size_t c = 0; c < 2; ++c) {
+          place.texel[c] = from.texel[c] + t * (to.texel[c] - from.texel[c]);
+          place.at[c] = from.at[c] + t * (to.at[c] - from.at[c]);
+        }
+        return place;
+      });
 }
 
 // A rectangle of the image (pixels) or of the plane.
@@ -320,7 +314,7 @@ class ShownParts {
     constexpr double large = 128;  // Texels a side.
     const std::optional<TexelBounds> whole = bounds_of(face.texel);
     const bool warped = !face.linear && transfer_.warp != nullptr && transfer_.warp->steps > 0;
-    if (!whole || triangle_area2(face.texel) == 0 || (warped && transfer_.warp->groups > 1)) return whole;
+    if (!whole || doubled_area(face.texel) == 0 || (warped && transfer_.warp->groups > 1)) return whole;
     if (whole->upper[0] - whole->lower[0] < large && whole->upper[1] - whole->lower[1] < large) return whole;
     const ImageFrame& frame = transfer_.image->frame;
     std::array<std::array<double, 2>, 3> pixels, places;
@@ -497,8 +491,8 @@ PlacedFace place_face(const Transfer& transfer, const Placement& placement, int 
 
   // A face that has an area only once its corners are rounded is mapped from the rounded corners.
   std::array<Texel, 3> corners = placement.corners;
-  const double rounded_area = triangle_area2(rounded(corners));
-  if (std::abs(triangle_area2(corners)) < 0.5 * std::abs(rounded_area)) corners = rounded(corners);
+  const double rounded_area = doubled_area(rounded(corners));
+  if (std::abs(doubled_area(corners)) < 0.5 * std::abs(rounded_area)) corners = rounded(corners);
 
   std::array<std::array<double, 2>, 3> pixels, plane;
   double longest = 0;
@@ -522,7 +516,7 @@ PlacedFace place_face(const Transfer& transfer, const Placement& placement, int 
     for (int k = 0; k < 3; ++k) along[k] = {face.along[k].real(), face.along[k].imag()};
     placed.along = affine_map(corners, along);
   }
-  placed.clamped = std::abs(triangle_area2(corners)) < longest;
+  placed.clamped = std::abs(doubled_area(corners)) < longest;
   return placed;
 }
 

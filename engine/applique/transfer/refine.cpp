@@ -69,10 +69,8 @@ double beyond_image(const ImageFrame& frame, const std::vector<Pixel>& points, d
 }
 
 RefinedFace refine_face(const Transfer& transfer, std::size_t face, const TexelBounds& shown) {
-  const auto& t = transfer.faces[face].texel;
-  const double texels = std::min(
-      0.5 * std::abs((t[1][0] - t[0][0]) * (t[2][1] - t[0][1]) - (t[1][1] - t[0][1]) * (t[2][0] - t[0][0])),
-      (shown.upper[0] - shown.lower[0]) * (shown.upper[1] - shown.lower[1]));
+  const double texels = std::min(0.5 * std::abs(doubled_area(transfer.faces[face].texel)),
+                                 (shown.upper[0] - shown.lower[0]) * (shown.upper[1] - shown.lower[1]));
   RefinedFace refined;
   for (const Vec2 image : transfer.faces[face].image)
     refined.points.push_back(transfer.image->frame.to_pixel(image));

@@ -16,6 +16,11 @@ namespace applique {
 /// 0.5). Not yet wrapped: may lie outside the texture.
 using Texel = std::array<double, 2>;
 
+/// Twice the signed area of a triangle.
+inline double doubled_area(const std::array<Texel, 3>& t) {
+  return (t[1][0] - t[0][0]) * (t[2][1] - t[0][1]) - (t[2][0] - t[0][0]) * (t[1][1] - t[0][1]);
+}
+
 enum class WrapMode : std::uint32_t { repeat, clamp, mirror };
 /// What a texel's values are: a colour (sRGB, composited in linear light), numbers as they are (roughness,
 /// occlusion, …), or a tangent-space normal.
