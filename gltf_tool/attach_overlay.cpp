@@ -108,12 +108,10 @@ class NodeOverlay {
     const DecalMesh::Origin& origin = mesh_->origins[vertex];
     const PatchFace& patch_face = decal_->map.patch.faces[face];
     const auto& triangle = part.triangles[decal_->surface->source(patch_face.mesh_face).triangle];
+    const auto weights = weights_in_source(*decal_, origin, face);
     Sources sources;
-    for (std::size_t i = 0; i < 3; ++i) {
-      if (origin.weights[i] == 0) continue;
-      for (std::size_t k = 0; k < 3; ++k)
-        if (patch_face.vertices[k] == origin.vertices[i]) sources[k] = {triangle[k], origin.weights[i]};
-    }
+    for (std::size_t k = 0; k < 3; ++k)
+      if (weights[k] != 0) sources[k] = {triangle[k], weights[k]};
     return sources;
   }
 

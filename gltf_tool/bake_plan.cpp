@@ -134,12 +134,16 @@ Result<void> check_uvs(const SolvedJob& job, const BakeTarget& target) {
   return {};
 }
 
-/// Tells a face of a normal map how the image lies in the tangent frames of its corners.
-void turn_into_tangent_space(const ModelPart& part, std::size_t index, const std::array<Tangent, 3>& frames,
-                             const ImageFrame& frame, TransferFace& face) {
-  const auto& triangle = part.triangles[index];
-  const Vec3& origin = part.positions[triangle[0]];
-  const Vec3 p1 = part.positions[triangle[1]] - origin, p2 = part.positions[triangle[2]] - origin;
+/// Tells a face of a normal map how the image lies in the tangent frames of its corners, which are in
+/// triangle `index` of the part.
+void turn_into_tangent_space(const ModelPart& part, std::size_t index, const FaceCorners& corners,
+                             const std::array<Tangent, 3>& frames, const ImageFrame& frame,
+                             TransferFace& face) {
+  std::array<Vec3, 3> positions;
+  for (std::size_t k = 0; k < 3; ++k)
+    positions[k] = blend(
+        corners[k], [&](std::size_t i) -> const Vec3& { return part.positions[part.triangles[index][i]]; });
+  const Vec3 p1 = positions[1] - positions[0], p2 = positions[2] - positions[0];
   const std::array<Pixel, 3> q = {frame.to_pixel(face.image[0]), frame.to_pixel(face.image[1]),
                                   frame.to_pixel(face.image[2])};
   // In the image y goes down, in a normal map up.
@@ -148,9 +152,12 @@ void turn_into_tangent_space(const ModelPart& part, std::size_t index, const std
   const Vec3 right = side * (y2 * p1 - y1 * p2), up = side * (x1 * p2 - x2 * p1);
   double turn = 0;
   for (std::size_t k = 0; k < 3; ++k) {
-    const Vec3 normal = shading_normal(part, index, k);
-    const Vec3 tangent = (frames[k].direction - normal.dot(frames[k].direction) * normal).normalized();
-    const Vec3 bitangent = frames[k].sign * normal.cross(tangent);
+    const Vec3 normal =
+        blend(corners[k], [&](std::size_t i) { return shading_normal(part, index, i); }).normalized();
+    const Vec3 direction = blend(corners[k], [&](std::size_t i) { return frames[i].direction; });
+    const Vec3 tangent = (direction - normal.dot(direction) * normal).normalized();
+    const double sign = blend(corners[k], [&](std::size_t i) { return frames[i].sign; });
+    const Vec3 bitangent = std::copysign(1, sign) * normal.cross(tangent);
     const Vec2 along(right.dot(tangent), right.dot(bitangent)), across(up.dot(tangent), up.dot(bitangent));
     face.along[k] = std::abs(along) > 0 ? along / std::abs(along) : Vec2(1);
     turn += cross(along, across);
@@ -176,8 +183,9 @@ class PartTexture {
   }
 
   /// Of a normal map.
-  void turn(std::size_t triangle, const ImageFrame& frame, TransferFace& face) const {
-    turn_into_tangent_space(*part_, triangle, frames_[triangle], frame, face);
+  void turn(std::size_t triangle, const FaceCorners& inside, const ImageFrame& frame,
+            TransferFace& face) const {
+    turn_into_tangent_space(*part_, triangle, inside, frames_[triangle], frame, face);
   }
 
  private:
@@ -335,8 +343,9 @@ BakeTransfer lay_out_transfer(const SolvedJob& job, const BakeTarget& target, co
   std::map<std::uint32_t, std::vector<char>> own;  // by part: the triangles that carry the decal
   for (const std::uint32_t part : target.parts) own[part].resize(job.model.parts[part].triangles.size(), 0);
   const auto add_face = [&](PatchFaceId f, const PartTexture& texture, std::size_t triangle) {
+    const FaceCorners& inside = decal.surface->corners_in_source(map.patch.faces[f].mesh_face);
     TransferFace face;
-    face.texel = texture.corners(triangle);
+    face.texel = texels_inside(texture.corners(triangle), inside);
     for (std::size_t k = 0; k < 3; ++k) {
       const PatchVertexId vertex = map.patch.faces[f].vertices[k];
       face.plane[k] = map.plane[vertex];
@@ -345,7 +354,7 @@ BakeTransfer lay_out_transfer(const SolvedJob& job, const BakeTarget& target, co
       const auto influence = map.influence.begin() + std::ptrdiff_t{vertex.value} * map.groups;
       transfer.influence.insert(transfer.influence.end(), influence, influence + map.groups);
     }
-    if (transfer.encoding == Encoding::normal) texture.turn(triangle, decal.region.frame(), face);
+    if (transfer.encoding == Encoding::normal) texture.turn(triangle, inside, decal.region.frame(), face);
     face.linear = map.linear[f] != 0;
     face.sheet = map.sheet[f];
     transfer.faces.push_back(face);

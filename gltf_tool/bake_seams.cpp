@@ -49,12 +49,16 @@ class ShownFaces {
     if (found == target_of_.end()) return std::nullopt;
     const SizedTarget& target = targets_[found->second];
     const auto& triangle = job_.model.parts[source.part].triangles[source.triangle];
+    const auto& uvs = uvs_.at(source.part);
+    std::array<Texel, 3> texels = {};
+    for (std::size_t k = 0; k < 3; ++k)
+      texels[k] = {uvs[triangle[k]][0] * target.width, uvs[triangle[k]][1] * target.height};
+    texels = texels_inside(texels, decal_.surface->corners_in_source(face.mesh_face));
     Seam::Side side{found->second, {}, {}};
     for (std::size_t corner = 0; corner < 3; ++corner) {
-      const auto& uv = uvs_.at(source.part)[triangle[corner]];
-      const Texel texel = {uv[0] * target.width, uv[1] * target.height};
       const auto end = std::find(ends.begin(), ends.end(), face.vertices[corner]);
-      (end == ends.end() ? side.apex : side.ends[static_cast<std::size_t>(end - ends.begin())]) = texel;
+      (end == ends.end() ? side.apex : side.ends[static_cast<std::size_t>(end - ends.begin())]) =
+          texels[corner];
     }
     return side;
   }

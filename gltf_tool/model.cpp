@@ -452,4 +452,16 @@ ModelSurface build_surface(const Model& model, const std::vector<std::size_t>& n
   return surface;
 }
 
+std::array<Texel, 3> texels_inside(const std::array<Texel, 3>& triangle, const FaceCorners& corners) {
+  std::array<Texel, 3> inside = {};
+  for (std::size_t k = 0; k < 3; ++k)
+    for (std::size_t c = 0; c < 2; ++c)
+      inside[k][c] = blend(corners[k], [&](std::size_t i) { return triangle[i][c]; });
+  return inside;
+}
+
+ModelSurface divided_surface(const ModelSurface& surface, const DividedSurface& divided) {
+  return {divided.mesh, surface.sources, divided.corners};
+}
+
 }  // namespace applique

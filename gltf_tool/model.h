@@ -7,11 +7,13 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 #include "applique/base/error.h"
 #include "applique/base/types.h"
 #include "applique/image/image.h"
+#include "applique/surface/divided_surface.h"
 #include "applique/surface/surface_mesh.h"
 #include "applique/transfer/transfer.h"
 
@@ -106,9 +108,30 @@ struct ModelSurface {
     std::uint32_t triangle;  ///< Index in its triangles.
   };
   std::vector<Source> sources;  ///< By SurfaceMesh::source.
+  /// By face: where its corners are in its source triangle. Empty: faces are whole triangles.
+  IdVector<FaceId, FaceCorners> corners;
 
   [[nodiscard]] const Source& source(FaceId f) const { return sources[mesh.source[f]]; }
+  /// Where the face's corners are in its source triangle.
+  [[nodiscard]] const FaceCorners& corners_in_source(FaceId f) const {
+    return corners.empty() ? whole_face : corners[f];
+  }
+  /// Whether the face is all of its source triangle.
+  [[nodiscard]] bool is_whole(FaceId f) const { return corners_in_source(f) == whole_face; }
 };
+
+/// A place in a triangle, from what its corners have: values(k) for corner k.
+template <class Values>
+auto blend(const std::array<double, 3>& weights, const Values& values) {
+  using Value = std::decay_t<decltype(values(0))>;
+  return Value(weights[0] * values(0) + weights[1] * values(1) + weights[2] * values(2));
+}
+
+/// The texels of a face whose source triangle has these.
+std::array<Texel, 3> texels_inside(const std::array<Texel, 3>& triangle, const FaceCorners& corners);
+
+/// The surface with the triangles cut as for a decal.
+ModelSurface divided_surface(const ModelSurface& surface, const DividedSurface& divided);
 
 /// Welds the parts whose node and material are allowed; an empty list allows all. Names that match nothing
 /// are an error of the caller's to check first.

@@ -87,6 +87,7 @@ Builder gather_faces(const Model& model, const SolvedDecal& decal) {
     const PatchFace& face = map.patch.faces[f];
     const auto& source = decal.surface->source(face.mesh_face);
     const ModelPart& part = model.parts[source.part];
+    const FaceCorners& inside = decal.surface->corners_in_source(face.mesh_face);
     const auto corners = decal.surface->mesh.corners(face.mesh_face);
     const double area = (corners[1] - corners[0]).cross(corners[2] - corners[0]).norm();
     Corners triangle = {};
@@ -105,7 +106,9 @@ Builder gather_faces(const Model& model, const SolvedDecal& decal) {
       }
       triangle[k] = index[vertex];
       mesh.lift[triangle[k]] = 1 + map.sheet[f];  // The highest comes last.
-      mesh.directions[triangle[k]] += area * part.normals[part.triangles[source.triangle][k]];
+      mesh.directions[triangle[k]] += area * blend(inside[k], [&](std::size_t i) -> const Vec3& {
+                                        return part.normals[part.triangles[source.triangle][i]];
+                                      });
     }
     mesh.triangles.push_back({triangle, f});
   }
@@ -295,17 +298,26 @@ double plane_units(const SolvedDecal& decal, double max_deviation) {
   return margin * max_deviation / decal.region.frame().pixels_per_unit();
 }
 
+/// Calls visit(weight, i) for the corners of the source triangle under a place in a face, in the origin's
+/// order: sums are equal for all faces about it.
+template <class Visit>
+void for_corners_under(const SolvedDecal& decal, const Origin& origin, PatchFaceId face, const Visit& visit) {
+  const PatchFace& patch_face = decal.map.patch.faces[face];
+  const FaceCorners& inside = decal.surface->corners_in_source(patch_face.mesh_face);
+  for (std::size_t j = 0; j < 3; ++j)
+    for (std::size_t k = 0; k < 3; ++k)
+      for (std::size_t i = 0; i < 3; ++i)
+        if (origin.weights[j] != 0 && patch_face.vertices[k] == origin.vertices[j] && inside[k][i] != 0)
+          visit(origin.weights[j] * inside[k][i], i);
+}
+
 /// The normal of the surface under a vertex of a triangle.
 Vec3 normal_under(const Model& model, const SolvedDecal& decal, const Origin& origin, PatchFaceId face) {
-  const PatchFace& patch_face = decal.map.patch.faces[face];
-  const auto& source = decal.surface->source(patch_face.mesh_face);
+  const auto& source = decal.surface->source(decal.map.patch.faces[face].mesh_face);
   Vec3 normal = Vec3::Zero();
-  for (std::size_t i = 0; i < 3; ++i) {  // In the origin's order: equal sums for all faces about it.
-    if (origin.weights[i] == 0) continue;
-    for (std::size_t k = 0; k < 3; ++k)
-      if (patch_face.vertices[k] == origin.vertices[i])
-        normal += origin.weights[i] * shading_normal(model.parts[source.part], source.triangle, k);
-  }
+  for_corners_under(decal, origin, face, [&](double weight, std::size_t i) {
+    normal += weight * shading_normal(model.parts[source.part], source.triangle, i);
+  });
   const double length = normal.norm();
   return length > 0 ? Vec3(normal / length) : Vec3(Vec3::UnitZ());
 }
@@ -368,6 +380,13 @@ DecalMesh build_overlay_mesh(const Model& model, const SolvedDecal& decal, doubl
   Divider(mesh, decal.map.warp, plane_units(decal, max_deviation)).run();
   cut_at_image_border(mesh, decal.region.frame());
   return Compactor(model, decal, mesh, offset).run();
+}
+
+std::array<double, 3> weights_in_source(const SolvedDecal& decal, const DecalMesh::Origin& origin,
+                                        PatchFaceId face) {
+  std::array<double, 3> weights = {0, 0, 0};
+  for_corners_under(decal, origin, face, [&](double weight, std::size_t i) { weights[i] += weight; });
+  return weights;
 }
 
 DecalMesh build_whole_mesh(const Model& model, const SolvedDecal& decal, double offset) {

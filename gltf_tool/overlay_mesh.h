@@ -41,6 +41,10 @@ struct DecalMesh {
 DecalMesh build_overlay_mesh(const Model& model, const SolvedDecal& decal, double offset,
                              double max_deviation = 0.25);
 
+/// The weights of the corners of the source triangle under `face` at a place within that patch face.
+std::array<double, 3> weights_in_source(const SolvedDecal& decal, const DecalMesh::Origin& origin,
+                                        PatchFaceId face);
+
 /// The faces that meet the region as they are, undivided and uncut; their texture coordinates, at the corners
 /// exact, go beyond [0, 1] where they stick out of the image. Else as build_overlay_mesh.
 DecalMesh build_whole_mesh(const Model& model, const SolvedDecal& decal, double offset);

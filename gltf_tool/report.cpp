@@ -53,7 +53,7 @@ Json features_of(const SolvedDecal& decal) {
   Json list = Json::array();
   for (std::size_t i = 0; i < decal.features.size(); ++i) {
     const Feature& solved = decal.features[i];
-    Json feature = feature_json(solved, position_of(decal.surface->mesh, solved.surface));
+    Json feature = feature_json(solved, position_of(decal.whole_surface->mesh, solved.surface));
     feature["residual_px"] = decal.map.quality.feature_residual.at(i);
     list.push_back(std::move(feature));
   }
@@ -137,6 +137,7 @@ Json decal_of(const SolvedDecal& decal, const std::optional<TexelDensity>& densi
   out["patch"] = {{"triangles", map.patch.faces.size()},
                   {"textured_triangles", textured},
                   {"vertices", map.patch.vertices.size()},
+                  {"divided", map.divided != nullptr},
                   {"iterations", map.solves},
                   {"sheets", map.sheets},
                   {"groups", map.groups}};

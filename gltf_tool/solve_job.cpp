@@ -1,7 +1,9 @@
 #include "solve_job.h"
 
+#include <algorithm>
 #include <future>
 #include <map>
+#include <set>
 #include <utility>
 
 #include <fmt/format.h>
@@ -163,7 +165,16 @@ DecalInput input_of(const SolvedDecal& decal) {
   return input;
 }
 
-SolveOptions options_of(const DecalJob& decal) {
+bool has_skin(const Model& model, const ModelSurface& surface) {
+  std::set<std::uint32_t> parts;
+  for (const ModelSurface::Source& source : surface.sources) parts.insert(source.part);
+  return std::any_of(parts.begin(), parts.end(), [&](std::uint32_t part) {
+    return model.document.json.at("nodes").at(model.parts[part].node).contains("skin");
+  });
+}
+
+/// `has_skin`: of its surface.
+SolveOptions options_of(const DecalJob& decal, bool has_skin) {
   SolveOptions options;
   options.method = decal.method;
   options.planar = decal.planar;
@@ -171,6 +182,9 @@ SolveOptions options_of(const DecalJob& decal) {
   options.energy = decal.energy;
   options.guide = decal.guide;
   options.overlap = decal.overlap;
+  // A skin moves the corners of triangles, between which viewers draw straight: an overlay's vertices within
+  // them would part from the surface.
+  options.divide = decal.output == DecalOutput::bake || !has_skin;
   return options;
 }
 
@@ -181,7 +195,7 @@ Result<void> solve_geometry(const Model& model, SurfaceCache& surfaces, SolvedDe
   decal.times.add("region", watch.lap());
 
   APPLIQUE_TRY(const SurfaceCache::Entry* entry, surfaces.find(decal.job));
-  decal.surface = entry->surface;
+  decal.whole_surface = decal.surface = entry->surface;
   decal.times.add("surface", watch.lap());
 
   APPLIQUE_CHECK(check_lone_frame(decal.job, decal.warnings));
@@ -198,9 +212,11 @@ Result<void> solve_geometry(const Model& model, SurfaceCache& surfaces, SolvedDe
 
   for (Warning& warning : unused_options(decal.job)) decal.warnings.push_back(std::move(warning));
 
-  SolveOptions options = options_of(decal.job);
+  SolveOptions options = options_of(decal.job, has_skin(model, *decal.surface));
   if (traced) options.trace = &decal.trace;
   APPLIQUE_TRY(decal.map, of_decal(decal.job, solve_decal(entry->surface->mesh, input_of(decal), options)));
+  if (decal.map.divided != nullptr)
+    decal.surface = std::make_shared<ModelSurface>(divided_surface(*decal.surface, *decal.map.divided));
   decal.times.add("solve", watch.lap());
   return {};
 }
@@ -280,8 +296,8 @@ void suggest_features(SolvedJob& solved, const StageCallback& on_stage) {
       on_stage(fmt::format("looking for better features of '{}'", decal.job.name),
                static_cast<double>(i) / static_cast<double>(solved.decals.size()));
     SuggestOptions options;
-    options.solve = options_of(decal.job);
-    decal.suggestion = suggest_feature(decal.surface->mesh, input_of(decal), decal.map, options);
+    options.solve = options_of(decal.job, has_skin(solved.model, *decal.whole_surface));
+    decal.suggestion = suggest_feature(decal.whole_surface->mesh, input_of(decal), decal.map, options);
   }
   solved.times.add("suggest", watch.seconds());
 }

@@ -25,8 +25,10 @@ namespace applique {
 struct SolvedDecal {
   DecalJob job;
   Image image;
-  std::shared_ptr<const ModelSurface>
-      surface;  ///< The surface it may use; decals with the same limits share it.
+  /// The surface it may use, which decals with the same limits share; its features are on it.
+  std::shared_ptr<const ModelSurface> whole_surface;
+  /// What its patch is over: the same, or divided where that is too coarse for the decal.
+  std::shared_ptr<const ModelSurface> surface;
   Region region;
   std::vector<Feature> features;
   DecalMap map;

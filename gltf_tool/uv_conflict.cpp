@@ -21,16 +21,21 @@ namespace {
 std::vector<SeparatedTriangle> touched_triangles(const SolvedJob& job, std::size_t decal_index) {
   const SolvedDecal& decal = job.decals[decal_index];
   const DecalMap& map = decal.map;
-  std::map<std::pair<std::uint32_t, std::uint32_t>, PatchFaceId> lowest;
+  std::map<FaceId, PatchFaceId> lowest;
   for (const PatchFaceId f : ids<PatchFaceId>(map.patch.faces.size())) {
     const FaceId face = map.patch.faces[f].mesh_face;
     if (map.textured[f] == 0 || !face.valid()) continue;
-    const auto& source = decal.surface->source(face);
-    const auto [place, fresh] = lowest.try_emplace({source.part, source.triangle}, f);
+    const auto [place, fresh] = lowest.try_emplace(face, f);
     if (!fresh && map.sheet[f] < map.sheet[place->second]) place->second = f;
   }
+  std::map<std::pair<std::uint32_t, std::uint32_t>, std::vector<PatchFaceId>> faces;
+  for (const auto& [face, f] : lowest) {
+    const auto& source = decal.surface->source(face);
+    faces[{source.part, source.triangle}].push_back(f);
+  }
   std::vector<SeparatedTriangle> list;
-  for (const auto& [source, face] : lowest) list.push_back({source.first, source.second, decal_index, face});
+  for (auto& [source, parts] : faces)
+    list.push_back({source.first, source.second, decal_index, std::move(parts)});
   return list;
 }
 

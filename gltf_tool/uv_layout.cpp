@@ -51,28 +51,21 @@ double slimness(const std::array<Texel, 3>& from, const std::array<Texel, 3>& to
 }
 
 const PatchFace& patch_face(const SolvedJob& job, const SeparatedTriangle& t) {
-  return job.decals[t.decal].map.patch.faces[t.face];
+  return job.decals[t.decal].map.patch.faces[t.faces.front()];
 }
 
-/// The layout of the decal's embedding, in pixels.
-std::array<Texel, 3> plane_corners(const SolvedJob& job, const SeparatedTriangle& t) {
-  const SolvedDecal& decal = job.decals[t.decal];
+/// Whether the decal has the triangle in one piece.
+bool is_whole(const SolvedJob& job, const SeparatedTriangle& t) {
+  return job.decals[t.decal].surface->is_whole(patch_face(job, t).mesh_face);
+}
+
+/// A patch face in the embedding or in the image, in pixels.
+std::array<Texel, 3> pixel_corners(const SolvedDecal& decal, const IdVector<PatchVertexId, Vec2>& places,
+                                   const PatchFace& face) {
   const double pixels = decal.region.frame().pixels_per_unit();
   std::array<Texel, 3> corners = {};
   for (std::size_t k = 0; k < 3; ++k) {
-    const Vec2 place = decal.map.plane[patch_face(job, t).vertices[k]];
-    corners[k] = {pixels * place.real(), -pixels * place.imag()};
-  }
-  return corners;
-}
-
-/// The image on the triangle, in pixels.
-std::array<Texel, 3> image_corners(const SolvedJob& job, const SeparatedTriangle& t) {
-  const SolvedDecal& decal = job.decals[t.decal];
-  const double pixels = decal.region.frame().pixels_per_unit();
-  std::array<Texel, 3> corners = {};
-  for (std::size_t k = 0; k < 3; ++k) {
-    const Vec2 place = decal.map.image[patch_face(job, t).vertices[k]];
+    const Vec2 place = places[face.vertices[k]];
     corners[k] = {pixels * place.real(), -pixels * place.imag()};
   }
   return corners;
@@ -192,8 +185,10 @@ class Charting {
     std::vector<std::uint32_t> rest;
     for (const std::uint32_t i : triangles) {
       const SeparatedTriangle& t = request_.triangles[i];
-      ChartTriangle triangle{plane_corners(job_, t), {}};
-      if (!(slimness(flatten(surface_corners(job_, t)), triangle.corners) <= slimmest)) {
+      const SolvedDecal& decal = job_.decals[t.decal];
+      ChartTriangle triangle{pixel_corners(decal, decal.map.plane, patch_face(job_, t)), {}};
+      if (!is_whole(job_, t) ||
+          !(slimness(flatten(surface_corners(job_, t)), triangle.corners) <= slimmest)) {
         rest.push_back(i);
         continue;
       }
@@ -366,7 +361,11 @@ std::string no_room(const SolvedJob& job, const LayoutRequest& request) {
 }  // namespace
 
 double pixels_on(const SolvedJob& job, const SeparatedTriangle& t) {
-  return 0.5 * std::abs(doubled_area(image_corners(job, t)));
+  const SolvedDecal& decal = job.decals[t.decal];
+  double pixels = 0;
+  for (const PatchFaceId f : t.faces)
+    pixels += 0.5 * std::abs(doubled_area(pixel_corners(decal, decal.map.image, decal.map.patch.faces[f])));
+  return pixels;
 }
 
 std::array<Texel, 3> texels_of(const SolvedJob& job, const SeparatedTriangle& t,
@@ -387,8 +386,13 @@ bool has_texture_space(const SolvedJob& job, const SeparatedTriangle& t, const s
 
 bool is_fine_enough(const SolvedJob& job, const SeparatedTriangle& t, const std::array<Texel, 3>& texels) {
   if (!(std::abs(doubled_area(texels)) > 0)) return false;
-  const auto pixels = image_corners(job, t);
-  return doubled_area(pixels) == 0 || half_axes(map_between(pixels, texels))[1] * coarsest >= 1;
+  const SolvedDecal& decal = job.decals[t.decal];
+  return std::all_of(t.faces.begin(), t.faces.end(), [&](PatchFaceId f) {
+    const PatchFace& face = decal.map.patch.faces[f];
+    const auto pixels = pixel_corners(decal, decal.map.image, face);
+    const auto there = texels_inside(texels, decal.surface->corners_in_source(face.mesh_face));
+    return doubled_area(pixels) == 0 || half_axes(map_between(pixels, there))[1] * coarsest >= 1;
+  });
 }
 
 Result<UvLayout> lay_out_uvs(const SolvedJob& job, const LayoutRequest& request) {

@@ -14,10 +14,10 @@ namespace applique {
 
 /// A triangle of the model that is to have texture space of its own, and the patch face of a decal over it.
 struct SeparatedTriangle {
-  std::uint32_t part = 0;      ///< Index in Model::parts.
-  std::uint32_t triangle = 0;  ///< Index in its triangles.
-  std::size_t decal = 0;       ///< Index in SolvedJob::decals.
-  PatchFaceId face;
+  std::uint32_t part = 0;          ///< Index in Model::parts.
+  std::uint32_t triangle = 0;      ///< Index in its triangles.
+  std::size_t decal = 0;           ///< Index in SolvedJob::decals.
+  std::vector<PatchFaceId> faces;  ///< The decal's on it: one, or some parts of a divided surface.
 };
 
 /// What a layout starts from.

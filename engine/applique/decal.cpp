@@ -2,10 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
+#include <utility>
 #include <vector>
 
 #include "applique/decal_input.h"
 #include "applique/decal_solver.h"
+#include "applique/finer_surface.h"
 #include "applique/paper/paper_solver.h"
 #include "applique/rivals/rival_solver.h"
 
@@ -17,6 +20,8 @@ constexpr double much_stretched = 1.1;    // L2
 constexpr double usual_margin = 0.08;     // of a patch's faces
 constexpr double nearly_all = 0.99;       // of the region
 constexpr double less_area[] = {0.5, 0.25, 0.1};  // of a patch that folds
+constexpr double finer_shares[] = {0.5, 0.25};    // of the region's width: a divided surface's edges
+constexpr double many_parts = 0.5;                // of a patch's faces: fewer would change little
 constexpr double less_isometry = 0.6;             // where all is much stretched
 
 /// Whether a map is injective.
@@ -28,6 +33,12 @@ bool is_sound(const DecalMap& map) {
 bool is_bearable(const DecalMap& map) {
   return is_sound(map) && map.quality.left_out < hardly_doubled &&
          map.quality.l2_stretch < bearably_stretched;
+}
+
+/// Whether parts of it that meet, on the surface or in the plane, keep some of it from being shown.
+bool is_in_its_own_way(const DecalMap& map) {
+  return map.quality.coverage < nearly_all &&
+         (map.status == Coverage::clipped_by_cover || map.status == Coverage::clipped_in_plane);
 }
 
 /// What is shown of the region, against how much it is stretched there.
@@ -53,12 +64,68 @@ bool may_stretch_elsewhere(const DecalMap& map) {
          (beyond || map.quality.coverage < nearly_all);
 }
 
-/// The attempts at a decal, of which the soundest is kept.
+/// The attempts at a decal over one surface, of which the soundest is kept.
 class Attempts {
  public:
   Attempts(const SurfaceMesh& surface, const DecalInput& input, const SolveOptions& options)
       : surface_(surface), input_(input), options_(options) {}
 
+  /// Makes one after another, each where those before it give reason to.
+  void make() {
+    // Paths that cross on the surface may mean that the image lies over itself there, or that features were
+    // moved past one another in one sheet: what comes out tells.
+    const bool over_itself = options_.overlap == Overlap::allow;
+    add({over_itself ? Crossings::overlap : Crossings::one_sheet, true, options_.energy});
+    if (crossed_ && (best() == nullptr || !is_bearable(*best())))
+      add({over_itself ? Crossings::one_sheet : Crossings::overlap, true, options_.energy});
+    // Parts that only touch in the plane, not on the surface: it may be better without groups.
+    const DecalMap* map = best();
+    if (map != nullptr && map->groups > 1 && map->sheets == 1 &&
+        (folds(*map) > 0 || map->quality.l2_stretch > much_stretched))
+      add({Crossings::one_sheet, false, options_.energy});
+    unfold();
+    // All of a long closed surface, flattened, is beyond what numbers can tell apart: less of it is not.
+    // Where there are several features, it is they that fold the image.
+    map = best();
+    if (map != nullptr && input_.features.size() == 1 && folds(*map) > 0) {
+      const double area = solvers_.front().patch_area();
+      for (const double share : less_area) add({Crossings::one_sheet, true, options_.energy, share * area});
+      unfold();
+    }
+    // Where all is much stretched, lengths that cannot be kept lead the growth less astray when they count
+    // less.
+    map = best();
+    if (map != nullptr && options_.energy != Energy::conformal && may_stretch_elsewhere(*map))
+      add({crossed_ && map->sheets > 1 ? Crossings::overlap : Crossings::one_sheet, true,
+           Energy{less_isometry * options_.energy.isometry}});
+  }
+
+  /// Whether smaller triangles would not help.
+  [[nodiscard]] bool is_found() const {
+    return best() != nullptr && is_bearable(*best()) && !is_in_its_own_way(*best());
+  }
+
+  /// Of the soundest's patch; 0 if all have failed.
+  [[nodiscard]] std::size_t patch_faces() const { return best() == nullptr ? 0 : best()->patch.faces.size(); }
+
+  /// Whether the others, over another surface, have led to more.
+  [[nodiscard]] bool is_outdone_by(const Attempts& others) const {
+    if (is_unsolved() || others.is_unsolved()) return !others.is_unsolved();
+    return sounder(*others.best(), *best());
+  }
+
+  /// The soundest; or the last error, if all have failed.
+  Result<DecalMap> finish() {
+    if (solvers_.empty()) return tl::unexpected(outcome_.error());
+    // Why it cannot lie over itself, as its features ask, says more than a map that folds instead.
+    if (is_unsolved()) return tl::unexpected(unmet_.error());
+    DecalSolver& solver = solvers_.front();
+    APPLIQUE_CHECK(check_coverage(input_, solver.map().quality.coverage));
+    if (options_.trace != nullptr) *options_.trace = std::move(solver.trace());
+    return solver.finish();
+  }
+
+ private:
   void add(const Attempt& attempt) {
     DecalSolver solver(surface_, input_, options_, attempt);
     outcome_ = solver.run();
@@ -79,30 +146,15 @@ class Attempts {
     rank();
   }
 
-  /// The soundest; or the last error, if all have failed.
-  Result<DecalMap> finish() {
-    if (solvers_.empty()) return tl::unexpected(outcome_.error());
-    DecalSolver& solver = solvers_.front();
-    // Why it cannot lie over itself, as its features ask, says more than a map that folds instead.
-    if (folds(solver.map()) > 0) APPLIQUE_CHECK(unmet_);
-    APPLIQUE_CHECK(check_coverage(input_, solver.map().quality.coverage));
-    if (options_.trace != nullptr) *options_.trace = std::move(solver.trace());
-    return solver.finish();
-  }
-
-  /// None while all have failed.
-  [[nodiscard]] const DecalMap* best() const { return solvers_.empty() ? nullptr : &solvers_.front().map(); }
-  /// Of its patch, scene units squared.
-  [[nodiscard]] double best_area() const { return solvers_.front().patch_area(); }
-  /// Whether the seed's paths crossed in any of them.
-  [[nodiscard]] bool crossed() const { return crossed_; }
-
- private:
   /// The soundest first; sounder() does not order more than that.
   void rank() {
     for (std::size_t k = 1; k < solvers_.size(); ++k)
       if (sounder(solvers_[k].map(), solvers_[0].map())) std::swap(solvers_[k], solvers_[0]);
   }
+
+  /// None while all have failed.
+  [[nodiscard]] const DecalMap* best() const { return solvers_.empty() ? nullptr : &solvers_.front().map(); }
+  [[nodiscard]] bool is_unsolved() const { return best() == nullptr || (folds(*best()) > 0 && !unmet_); }
 
   const SurfaceMesh& surface_;
   const DecalInput& input_;
@@ -110,7 +162,31 @@ class Attempts {
   std::vector<DecalSolver> solvers_;  ///< That have not failed, the soundest first.
   Result<void> outcome_;              ///< Of the last.
   Result<void> unmet_;                ///< Of the last that was not solved.
-  bool crossed_ = false;
+  bool crossed_ = false;              ///< Whether the seed's paths crossed in any of them.
+};
+
+/// The attempts over a divided surface.
+class DividedAttempts {
+ public:
+  DividedAttempts(std::shared_ptr<const DividedSurface> divided, const DecalInput& input,
+                  const SolveOptions& options)
+      : divided_(std::move(divided)), input_(input), attempts_(divided_->mesh, input_, options) {
+    for (Feature& feature : input_.features) feature.surface = divided_->to_part(feature.surface);
+    attempts_.make();
+  }
+
+  [[nodiscard]] const Attempts& attempts() const { return attempts_; }
+
+  Result<DecalMap> finish() {
+    auto map = attempts_.finish();
+    if (map) map->divided = divided_;
+    return map;
+  }
+
+ private:
+  std::shared_ptr<const DividedSurface> divided_;
+  DecalInput input_;  ///< Its features are on the parts.
+  Attempts attempts_;
 };
 
 }  // namespace
@@ -146,34 +222,22 @@ Result<DecalMap> solve_decal(const SurfaceMesh& surface, const DecalInput& input
   if (options.method == Method::paper) return solve_decal_as_paper(surface, input, options);
   APPLIQUE_CHECK(check_input(surface, input, targets_of(input), options.overlap));
   Attempts attempts(surface, input, options);
-  // Paths that cross on the surface may mean that the image lies over itself there, or that features were
-  // moved past one another in one sheet: what comes out tells.
-  const bool over_itself = options.overlap == Overlap::allow;
-  attempts.add({over_itself ? Crossings::overlap : Crossings::one_sheet, true, options.energy});
-  if (attempts.crossed() && (attempts.best() == nullptr || !is_bearable(*attempts.best())))
-    attempts.add({over_itself ? Crossings::one_sheet : Crossings::overlap, true, options.energy});
-  // Parts that only touch in the plane, not on the surface: it may be better without groups.
-  const DecalMap* map = attempts.best();
-  if (map != nullptr && map->groups > 1 && map->sheets == 1 &&
-      (folds(*map) > 0 || map->quality.l2_stretch > much_stretched))
-    attempts.add({Crossings::one_sheet, false, options.energy});
-  attempts.unfold();
-  // All of a long closed surface, flattened, is beyond what numbers can tell apart: less of it is not. Where
-  // there are several features, it is they that fold the image.
-  map = attempts.best();
-  if (map != nullptr && input.features.size() == 1 && folds(*map) > 0) {
-    const double area = attempts.best_area();
-    for (const double share : less_area)
-      attempts.add({Crossings::one_sheet, true, options.energy, share * area});
-    attempts.unfold();
+  attempts.make();
+  // Paths and turns that share a coarse model's triangles may have their own in a finer one.
+  const Attempts* best = &attempts;
+  std::vector<std::unique_ptr<DividedAttempts>> divided;
+  DividedAttempts* best_divided = nullptr;
+  for (const double share : finer_shares) {
+    if (!options.divide || best->is_found()) break;
+    auto finer = finer_surface(surface, input, share);
+    const std::size_t parts = finer->mesh.faces.size() - surface.faces.size();
+    if (static_cast<double>(parts) < many_parts * static_cast<double>(attempts.patch_faces())) continue;
+    divided.push_back(std::make_unique<DividedAttempts>(std::move(finer), input, options));
+    if (!best->is_outdone_by(divided.back()->attempts())) continue;
+    best_divided = divided.back().get();
+    best = &best_divided->attempts();
   }
-  // Where all is much stretched, lengths that cannot be kept lead the growth less astray when they count
-  // less.
-  map = attempts.best();
-  if (map != nullptr && options.energy != Energy::conformal && may_stretch_elsewhere(*map))
-    attempts.add({attempts.crossed() && map->sheets > 1 ? Crossings::overlap : Crossings::one_sheet, true,
-                  Energy{less_isometry * options.energy.isometry}});
-  return attempts.finish();
+  return best_divided != nullptr ? best_divided->finish() : attempts.finish();
 }
 
 }  // namespace applique

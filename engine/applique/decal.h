@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -15,6 +16,7 @@
 #include "applique/region/region.h"
 #include "applique/rivals/rival_options.h"
 #include "applique/solve_trace.h"
+#include "applique/surface/divided_surface.h"
 #include "applique/surface/surface_mesh.h"
 #include "applique/warp/stress.h"
 #include "applique/warp/warp.h"
@@ -65,7 +67,11 @@ struct SolveOptions {
   PlanarLimits planar;                ///< Of Method::planar.
   Parents parents = Parents::upwind;  ///< Of Method::expmap.
   int max_solves = 60;                ///< Embeddings before giving up.
-  SolveTrace* trace = nullptr;        ///< Told what happened, when given.
+  /// Where the surface's triangles are too large for the decal (it would fold, or parts of it that lie over
+  /// one another share a triangle), they are cut, and the patch is over the parts: DecalMap::divided. Not
+  /// set, such a decal is not solved, or folds. Method::applique only.
+  bool divide = false;
+  SolveTrace* trace = nullptr;  ///< Told what happened, when given.
   bool check_patch =
       false;  ///< Asserts the patch's invariants after every change; builds for debugging always do.
 };
@@ -78,6 +84,8 @@ struct SolveTimes {
 /// A solved decal: the patch and its map into the image.
 struct DecalMap {
   Patch patch;
+  /// The surface as the patch has it, where the one that was given is too coarse (SolveOptions::divide).
+  std::shared_ptr<const DividedSurface> divided;
   IdVector<PatchVertexId, Vec2> plane;   ///< The aligned embedding.
   IdVector<PatchVertexId, Vec2> image;   ///< warp(plane).
   Warp warp;                             ///< plane -> image, exact everywhere.
@@ -102,6 +110,10 @@ struct DecalMap {
   int solves = 0;
   std::vector<Warning> warnings;
 
+  /// What the patch lies over: `divided`, or the surface that the decal was solved on.
+  [[nodiscard]] const SurfaceMesh& patch_surface(const SurfaceMesh& surface) const {
+    return divided != nullptr ? divided->mesh : surface;
+  }
   /// The influence of each group at a place in a face: what the warp is to be told there.
   [[nodiscard]] std::vector<double> influence_at(const std::array<PatchVertexId, 3>& corners,
                                                  const std::array<double, 3>& barycentric) const;

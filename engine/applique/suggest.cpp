@@ -55,7 +55,7 @@ class Trial {
       const std::array<Vec2, 3> p = image_of(q, map.image);
       const double area = 0.5 * cross(p[1] - p[0], p[2] - p[0]);
       if (map.textured[q] == 0 || area <= 0) continue;
-      const auto corners = surface.corners(map.patch.faces[q].mesh_face);
+      const auto corners = map.patch_surface(surface).corners(map.patch.faces[q].mesh_face);
       const double share = area_in_region(region_, p) / area;
       faces_.push_back(
           {q, corners, share, share * 0.5 * (corners[1] - corners[0]).cross(corners[2] - corners[0]).norm()});
@@ -133,6 +133,7 @@ class Trial {
       nearest = off;
       feature = Feature{on_grid(pin.image), {map_.patch.faces[q].mesh_face, weights}, map_.depth[q]};
     }
+    if (feature && map_.divided != nullptr) feature->surface = map_.divided->to_whole(feature->surface);
     return feature;
   }
 

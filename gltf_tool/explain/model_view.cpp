@@ -31,19 +31,52 @@ std::array<float, 4> to_factor(const Rgba& colour) {
           static_cast<float>(srgb_to_linear(colour.b)), 1.0F};
 }
 
+/// The parts with the triangles cut as in the decal's surface; by part, the triangles that the surface's
+/// faces are.
+std::vector<std::vector<FaceId>> cut_as_in_surface(std::vector<ModelPart>& parts,
+                                                   const ModelSurface& surface) {
+  std::vector<std::vector<FaceId>> faces;
+  for (const ModelPart& part : parts) faces.emplace_back(part.triangles.size());
+  std::vector<std::vector<std::array<std::uint32_t, 3>>> whole;
+  for (const ModelPart& part : parts) whole.push_back(part.triangles);
+  for (const FaceId f : ids<FaceId>(surface.mesh.faces.size())) {
+    const auto& [p, t] = surface.source(f);
+    ModelPart& part = parts[p];
+    if (surface.is_whole(f)) {
+      faces[p][t] = f;
+      continue;
+    }
+    std::array<std::uint32_t, 3> triangle = {};
+    for (std::size_t k = 0; k < 3; ++k) {
+      triangle[k] = static_cast<std::uint32_t>(part.positions.size());
+      const auto at_corners = [&](const std::vector<Vec3>& values) {
+        return blend(surface.corners_in_source(f)[k], [&](std::size_t i) { return values[whole[p][t][i]]; });
+      };
+      part.positions.push_back(at_corners(part.positions));
+      part.normals.push_back(at_corners(part.normals).normalized());
+    }
+    if (!faces[p][t].valid()) {  // The first takes the place of the whole.
+      part.triangles[t] = triangle;
+      faces[p][t] = f;
+    } else {
+      part.triangles.push_back(triangle);
+      faces[p].push_back(f);
+    }
+  }
+  return faces;
+}
+
 /// The model's parts without their textures, a mesh for each colour that occurs on them.
 std::vector<RenderMesh> tinted_parts(const Model& model, const SolvedDecal& decal,
                                      std::span<const SurfaceTint> tints) {
-  std::vector<std::vector<std::size_t>> tint_of;  // [part][triangle], 0: plain
-  for (const ModelPart& part : model.parts) tint_of.emplace_back(part.triangles.size(), 0);
+  std::vector<ModelPart> parts = model.parts;
+  const auto faces = cut_as_in_surface(parts, *decal.surface);
+  IdVector<FaceId, std::size_t> tint_of(decal.surface->mesh.faces.size(), 0);  // 0: plain
   for (std::size_t t = 0; t < tints.size(); ++t)
-    for (const FaceId f : tints[t].faces) {
-      const ModelSurface::Source& source = decal.surface->source(f);
-      tint_of[source.part][source.triangle] = t + 1;
-    }
+    for (const FaceId f : tints[t].faces) tint_of[f] = t + 1;
   std::vector<RenderMesh> meshes;
-  for (std::size_t p = 0; p < model.parts.size(); ++p) {
-    const ModelPart& part = model.parts[p];
+  for (std::size_t p = 0; p < parts.size(); ++p) {
+    const ModelPart& part = parts[p];
     RenderMesh mesh;
     for (const Vec3& position : part.positions) mesh.positions.push_back(to_floats(position));
     if (!part.flat)
@@ -52,7 +85,8 @@ std::vector<RenderMesh> tinted_parts(const Model& model, const SolvedDecal& deca
     for (std::size_t t = 0; t <= tints.size(); ++t) {
       mesh.triangles.clear();
       for (std::size_t i = 0; i < part.triangles.size(); ++i)
-        if (tint_of[p][i] == t) mesh.triangles.push_back(part.triangles[i]);
+        if ((faces[p][i].valid() ? tint_of[faces[p][i]] : 0) == t)
+          mesh.triangles.push_back(part.triangles[i]);
       mesh.base_colour_factor = to_factor(t == 0 ? plain : tints[t - 1].colour);
       if (!mesh.triangles.empty()) meshes.push_back(mesh);
     }
@@ -118,17 +152,17 @@ void draw_features_on_model(draw::Canvas& canvas, const SolvedDecal& decal, cons
   const double distance = (camera.eye - camera.target).norm();
   const Eigen::Matrix4d projection =
       view_projection(camera, box.size.real() / box.size.imag(), 0.01 * distance, 10 * distance);
-  const SurfaceQuery query(decal.surface->mesh);
+  const SurfaceQuery query(decal.whole_surface->mesh);
   const double tolerance = 2 * pixel_size(camera, box.size.imag());
   constexpr double hidden_alpha = 0.35;
   for (std::size_t k = 0; k < decal.features.size(); ++k) {
-    const Vec3 place = position_of(decal.surface->mesh, decal.features[k].surface);
+    const Vec3 place = position_of(decal.whole_surface->mesh, decal.features[k].surface);
     const Eigen::Vector4d clip = projection * place.homogeneous();
     if (clip.w() <= 0) continue;
     const Vec2 at = box.low + Vec2((0.5 + 0.5 * clip.x() / clip.w()) * box.size.real(),
                                    (0.5 + 0.5 * clip.y() / clip.w()) * box.size.imag());
     const auto hit = query.first_hit(camera.eye, place - camera.eye);
-    const bool seen = !hit || (position_of(decal.surface->mesh, *hit) - camera.eye).norm() >
+    const bool seen = !hit || (position_of(decal.whole_surface->mesh, *hit) - camera.eye).norm() >
                                   (place - camera.eye).norm() - tolerance;
     draw_feature(canvas, at, k, pen_for(box).mark, draw::with_alpha(palette::ink, seen ? 1 : hidden_alpha));
   }

@@ -158,59 +158,92 @@ TEST(Overlap, ARingThatClosesOverItselfIsShownWhole) {
   }
 }
 
-/// Turns that fall together on a pole of few triangles: what cannot be met is said, never passed over.
-TEST(Overlap, FeaturesOnPolesOfFewTrianglesAreMetOrNamed) {
-  int met = 0, named = 0;
+/// A pole of few triangles, round the z axis.
+SurfaceMesh pole(int sides, int rows, double height, bool capped) {
+  shapes::Soup soup = shapes::cylinder(sides, rows, 1, height);
+  for (const double z : {0.0, height}) {
+    if (!capped) break;
+    const auto middle = static_cast<std::uint32_t>(soup.positions.size());
+    soup.positions.push_back({0, 0, z});
+    for (int i = 0; i < sides; ++i) {
+      const std::uint32_t a = (z > 0 ? (sides + 1) * rows : 0) + i, b = a + 1;
+      soup.triangles.push_back(z > 0 ? std::array{middle, a, b} : std::array{middle, b, a});
+    }
+  }
+  return soup.weld();
+}
+
+/// A ribbon wound round a pole, pinned along its middle.
+DecalInput helix(const SurfaceMesh& surface, double turns, int pins, double bottom, double rise) {
+  std::vector<Pin> places;
+  for (int k = 0; k <= pins; ++k) {
+    const double angle = 2 * pi * turns * (k + 0.1) / pins;
+    places.push_back({{50 + 1100.0 * k / pins, 50}, {std::cos(angle), std::sin(angle), bottom + rise * k}});
+  }
+  return decal(surface, ribbon(), places);
+}
+
+/// Turns that fall together on a pole of few triangles.
+struct PoleCase {
+  int sides, rows;
+  double height;
+  bool capped;
+  double turns;
+  int pins;
+  double rise;
+};
+
+std::vector<PoleCase> pole_cases() {
+  std::vector<PoleCase> cases;
   for (const int sides : {3, 4, 8, 12})
     for (const int rows : {1, 3})
-      for (const double turns : {1.5, 2.5, 4.0}) {
-        const SurfaceMesh surface = shapes::cylinder(sides, rows, 1, 4).weld();
-        const int count = static_cast<int>(4 * turns);
-        std::vector<Pin> pins;
-        for (int k = 0; k <= count; ++k) {
-          const double angle = 2 * pi * turns * (k + 0.1) / count;
-          pins.push_back({{50 + 1100.0 * k / count, 50}, {std::cos(angle), std::sin(angle), 2}});
-        }
-        SolveOptions options;
-        options.overlap = Overlap::allow;
-        const auto map = solve_decal(surface, decal(surface, ribbon(), pins), options);
-        if (map) {
-          for (const double residual : map->quality.feature_residual) EXPECT_LT(residual, 1e-6);
-          ++met;
-        } else {
-          EXPECT_EQ(map.error().code, ErrorCode::not_solved);
-          EXPECT_NE(map.error().message.find("divide"), std::string::npos) << map.error().message;
-          ++named;
-        }
-      }
+      for (const double turns : {1.5, 2.5, 4.0})
+        cases.push_back({sides, rows, 4, false, turns, static_cast<int>(4 * turns), 0});
   // The turns' paths run along the rims of caps, and meet over their middles.
-  for (const int sides : {3, 8, 16}) {
-    shapes::Soup soup = shapes::cylinder(sides, 1, 1, 6);
-    for (const double z : {0.0, 6.0}) {
-      const auto middle = static_cast<std::uint32_t>(soup.positions.size());
-      soup.positions.push_back({0, 0, z});
-      for (int i = 0; i < sides; ++i) {
-        const std::uint32_t a = (z > 0 ? sides + 1 : 0) + i, b = a + 1;
-        soup.triangles.push_back(z > 0 ? std::array{middle, a, b} : std::array{middle, b, a});
-      }
-    }
-    const SurfaceMesh surface = soup.weld();
-    std::vector<Pin> pins;
-    for (int k = 0; k <= 16; ++k) {
-      const double angle = 2 * pi * 2.5 * (k + 0.1) / 16;
-      pins.push_back({{50 + 1100.0 * k / 16, 50}, {std::cos(angle), std::sin(angle), 2 + 0.06 * k}});
-    }
+  for (const int sides : {3, 8, 16}) cases.push_back({sides, 1, 6, true, 2.5, 16, 0.06});
+  return cases;
+}
+
+/// On the model's own triangles what cannot be met is said, never passed over.
+TEST(Overlap, FeaturesOnPolesOfFewTrianglesAreMetOrNamed) {
+  int met = 0, named = 0;
+  for (const PoleCase& c : pole_cases()) {
+    const SurfaceMesh surface = pole(c.sides, c.rows, c.height, c.capped);
     SolveOptions options;
     options.overlap = Overlap::allow;
-    const auto map = solve_decal(surface, decal(surface, ribbon(), pins), options);
-    if (map)
-      expect_exact_and_unfolded(*map);
-    else
+    const auto map = solve_decal(surface, helix(surface, c.turns, c.pins, 2, c.rise), options);
+    if (map) {
+      for (const double residual : map->quality.feature_residual) EXPECT_LT(residual, 1e-6);
+      EXPECT_EQ(map->divided, nullptr);
+      ++met;
+    } else {
+      EXPECT_EQ(map.error().code, ErrorCode::not_solved);
       EXPECT_NE(map.error().message.find("divide"), std::string::npos) << map.error().message;
-    named += !map;
+      ++named;
+    }
   }
   EXPECT_GE(met, 16);
   EXPECT_GE(named, 1);
+}
+
+/// A pole unrolls: with triangles of their own the turns lie on it without stretch.
+TEST(Overlap, DividedPolesCarryEveryTurn) {
+  int divided = 0;
+  for (const PoleCase& c : pole_cases()) {
+    SCOPED_TRACE(testing::Message() << c.sides << " sides, " << c.rows << " rows, " << c.turns << " turns, "
+                                    << (c.capped ? "capped" : "open"));
+    const SurfaceMesh surface = pole(c.sides, c.rows, c.height, c.capped);
+    SolveOptions options;
+    options.overlap = Overlap::allow;
+    options.divide = true;
+    const auto map = solve_decal(surface, helix(surface, c.turns, c.pins, 2, c.rise), options);
+    ASSERT_TRUE(map) << map.error().message;
+    expect_exact_and_unfolded(*map);
+    EXPECT_GT(map->quality.coverage, 0.9999);
+    EXPECT_LT(map->quality.l2_stretch, 1.01);
+    divided += map->divided != nullptr;
+  }
+  EXPECT_GE(divided, 9);
 }
 
 /// How often the map shows the image at most, at points all over it; and at how many of them not at all.

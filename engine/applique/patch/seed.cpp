@@ -66,16 +66,8 @@ tl::expected<std::vector<Strand>, SeedFailure> lay_strands(const SurfaceMesh& me
 
 /// Image per surface along the shortest way between two features; infinite where there is none.
 double scale_along(const SurfaceMesh& mesh, const SeedFeature& from, const SeedFeature& to) {
-  const std::vector<VertexId> path = shortest_path(mesh, from.surface, to.surface);
-  if (path.empty()) return std::numeric_limits<double>::infinity();
-  const Vec3 end = position_of(mesh, to.surface);
-  Vec3 last = position_of(mesh, from.surface);
-  double length = (mesh.positions[path.back()] - end).norm();
-  for (VertexId v : path) {
-    length += (mesh.positions[v] - last).norm();
-    last = mesh.positions[v];
-  }
-  return std::abs(to.image - from.image) / length;
+  const auto length = way_length(mesh, from.surface, to.surface);
+  return length ? std::abs(to.image - from.image) / *length : std::numeric_limits<double>::infinity();
 }
 
 /// How many sheets each face near the paths has: as many as there are strands over it that lie far apart in

@@ -70,4 +70,16 @@ std::vector<VertexId> shortest_path(const SurfaceMesh& mesh, const SurfacePoint&
   return path;
 }
 
+std::optional<double> way_length(const SurfaceMesh& mesh, const SurfacePoint& from, const SurfacePoint& to) {
+  const std::vector<VertexId> path = shortest_path(mesh, from, to);
+  if (path.empty()) return std::nullopt;
+  Vec3 last = position_of(mesh, from);
+  double length = (mesh.positions[path.back()] - position_of(mesh, to)).norm();
+  for (const VertexId v : path) {
+    length += (mesh.positions[v] - last).norm();
+    last = mesh.positions[v];
+  }
+  return length;
+}
+
 }  // namespace applique

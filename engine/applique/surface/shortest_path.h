@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <unordered_set>
 #include <vector>
 
@@ -13,5 +14,8 @@ namespace applique {
 /// neighbourhood. Goes round the `blocked` vertices; empty, too, where that leaves no way.
 std::vector<VertexId> shortest_path(const SurfaceMesh& mesh, const SurfacePoint& from, const SurfacePoint& to,
                                     const std::unordered_set<VertexId>& blocked = {});
+
+/// The length of that path, scene units, from point to point; none where there is no way.
+std::optional<double> way_length(const SurfaceMesh& mesh, const SurfacePoint& from, const SurfacePoint& to);
 
 }  // namespace applique
