@@ -277,7 +277,9 @@ Result<Job> load_job(const std::filesystem::path& path) {
   job.model = folder / document["model"].get<std::string>();
   job.texture_size = document.value("texture_size", job.texture_size);
   job.gutter = document.value("gutter", job.gutter);
-  if (document.value("seams", "sharp") == "exact") job.seams = SeamFit::exact;
+  const std::string seams = document.value("seams", "sharp");
+  if (seams != "sharp") job.seams = SeamFit::exact;  // Of what cannot be unwrapped in one piece, too.
+  job.unwrap_seams = seams == "unwrap";
   if (document.contains("resolution")) job.resolution = document["resolution"].get<int>();
   for (const json& decal : document["decals"]) job.decals.push_back(decal_of(decal, folder));
   APPLIQUE_CHECK(check_names(job.decals, file));

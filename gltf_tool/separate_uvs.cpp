@@ -71,6 +71,7 @@ class Separation {
     request.triangles = std::move(triangles);
     request.texture = group.texture;
     if (!group.has_texture) request.created_size = job_.job.texture_size;
+    request.unwrap = job_.job.unwrap_seams;
     const std::size_t material = isolate(group, request);
     const std::set<MaterialSlot> written = slots_written(request);
     const std::vector<BakedSlots> slots = find_slots(material, written);

@@ -25,10 +25,11 @@ struct SeparatedUvs {
 
 /// Gives triangles under the job's baked decals texture space of their own where they have none, or share
 /// it: where in a slot that the decal writes, other triangles of the model show the same texels (mirrored
-/// halves, tiles, stacked islands), where their texture coordinates are too coarse for a decal, and where
-/// there are none at all. Decals whose "uv_conflict" is "share" are left as they are (of triangles under them
-/// that are separated for another decal, SolvedJob::former tells where they were: what still shows those
-/// texels shows the decal); one whose it is "error" fails.
+/// halves, tiles, stacked islands), where their texture coordinates are too coarse for a decal, where there
+/// are none at all, and, if the job unwraps seams, where a decal crosses from one island to another. Decals
+/// whose "uv_conflict" is "share" are left as they are (of triangles under them that are separated for
+/// another decal, SolvedJob::former tells where they were: what still shows those texels shows the decal);
+/// one whose it is "error" fails.
 ///
 /// In the model, such triangles become a primitive of the same mesh with a material of its own; all textures
 /// of the material are resampled into an atlas, so that what the decal does not cover looks as before, and

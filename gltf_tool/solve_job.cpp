@@ -173,8 +173,7 @@ bool has_skin(const Model& model, const ModelSurface& surface) {
   });
 }
 
-/// `has_skin`: of its surface.
-SolveOptions options_of(const DecalJob& decal, bool has_skin) {
+SolveOptions options_of(const DecalJob& decal) {
   SolveOptions options;
   options.method = decal.method;
   options.planar = decal.planar;
@@ -182,10 +181,38 @@ SolveOptions options_of(const DecalJob& decal, bool has_skin) {
   options.energy = decal.energy;
   options.guide = decal.guide;
   options.overlap = decal.overlap;
-  // A skin moves the corners of triangles, between which viewers draw straight: an overlay's vertices within
-  // them would part from the surface.
-  options.divide = decal.output == DecalOutput::bake || !has_skin;
+  options.divide = true;
   return options;
+}
+
+/// Whether it is an overlay on a skin: that moves the corners of triangles, between which viewers draw
+/// straight, so that vertices within them would part from the surface.
+bool keeps_to_triangles(const SolvedDecal& decal, const Model& model) {
+  return decal.job.output == DecalOutput::overlay && has_skin(model, *decal.whole_surface);
+}
+
+/// Once more, as well as it can be had so; `decal.map` is over parts of the triangles.
+Result<void> solve_on_whole_triangles(SolvedDecal& decal, const SolveOptions& options) {
+  const MapQuality divided = decal.map.quality;
+  const std::string why =
+      "the model's triangles are too large for it, and those of an overlay on a skin "
+      "cannot be divided";
+  auto map = solve_decal(decal.whole_surface->mesh, input_of(decal), options);
+  if (!map)
+    return fail(map.error().code,
+                fmt::format("{}; {}: give it \"output\": \"bake\"", map.error().message, why));
+  decal.map = std::move(*map);
+  constexpr double notably = 1.1;
+  const auto worth = [](const MapQuality& quality) { return quality.coverage / quality.l2_stretch; };
+  if (worth(divided) < notably * worth(decal.map.quality)) return {};
+  decal.warnings.push_back(
+      {"overlay_coarse",
+       fmt::format(
+           "decal '{}': {}; with \"output\": \"bake\" {:.1f} % of it would be shown in place of {:.1f} %, "
+           "at an L2 stretch of {:.2f} in place of {:.2f}",
+           decal.job.name, why, 100 * divided.coverage, 100 * decal.map.quality.coverage, divided.l2_stretch,
+           decal.map.quality.l2_stretch)});
+  return {};
 }
 
 Result<void> solve_geometry(const Model& model, SurfaceCache& surfaces, SolvedDecal& decal, bool traced) {
@@ -212,9 +239,13 @@ Result<void> solve_geometry(const Model& model, SurfaceCache& surfaces, SolvedDe
 
   for (Warning& warning : unused_options(decal.job)) decal.warnings.push_back(std::move(warning));
 
-  SolveOptions options = options_of(decal.job, has_skin(model, *decal.surface));
+  SolveOptions options = options_of(decal.job);
   if (traced) options.trace = &decal.trace;
   APPLIQUE_TRY(decal.map, of_decal(decal.job, solve_decal(entry->surface->mesh, input_of(decal), options)));
+  if (decal.map.divided != nullptr && keeps_to_triangles(decal, model)) {
+    options.divide = false;
+    APPLIQUE_CHECK(solve_on_whole_triangles(decal, options));
+  }
   if (decal.map.divided != nullptr)
     decal.surface = std::make_shared<ModelSurface>(divided_surface(*decal.surface, *decal.map.divided));
   decal.times.add("solve", watch.lap());
@@ -296,7 +327,8 @@ void suggest_features(SolvedJob& solved, const StageCallback& on_stage) {
       on_stage(fmt::format("looking for better features of '{}'", decal.job.name),
                static_cast<double>(i) / static_cast<double>(solved.decals.size()));
     SuggestOptions options;
-    options.solve = options_of(decal.job, has_skin(solved.model, *decal.whole_surface));
+    options.solve = options_of(decal.job);
+    options.solve.divide = !keeps_to_triangles(decal, solved.model);
     decal.suggestion = suggest_feature(decal.whole_surface->mesh, input_of(decal), decal.map, options);
   }
   solved.times.add("suggest", watch.seconds());

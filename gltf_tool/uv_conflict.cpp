@@ -160,6 +160,45 @@ SpaceState find_state(const SolvedJob& job, const TextureSpace& space, const UvC
   return state;
 }
 
+/// Whether the decal goes on from one triangle of the space to another whose coordinates do not, and may be
+/// laid out in one piece: over parts of triangles it does not tell where the whole ones would be.
+bool crosses_seams(const SolvedJob& job, const TextureSpace& space, std::size_t decal_index) {
+  constexpr double tolerance = 1e-3;  // texels
+  const SolvedDecal& decal = job.decals[decal_index];
+  const DecalMap& map = decal.map;
+  if (map.divided != nullptr) return false;
+  const auto corners_of = [&](PatchFaceId f) -> std::optional<std::array<Texel, 3>> {
+    const FaceId face = map.patch.faces[f].mesh_face;
+    if (map.textured[f] == 0 || !face.valid()) return std::nullopt;
+    const auto& source = decal.surface->source(face);
+    const std::uint32_t part = part_that_stands_for(job.model, decal.job, source.part);
+    const auto uvs = space.uvs.find(part);
+    if (uvs == space.uvs.end() || uvs->second.empty()) return std::nullopt;
+    return space.corners(job.model, part, source.triangle);
+  };
+  for (const PatchFaceId f : ids<PatchFaceId>(map.patch.faces.size())) {
+    const auto here = corners_of(f);
+    if (!here) continue;
+    const PatchFace& face = map.patch.faces[f];
+    for (std::size_t k = 0; k < 3; ++k) {
+      const PatchFaceId across = face.neighbours[k];
+      const auto there = across.valid() && f < across ? corners_of(across) : std::nullopt;
+      if (!there) continue;
+      const auto& vertices = map.patch.faces[across].vertices;
+      for (const std::size_t end : {(k + 1) % 3, (k + 2) % 3}) {
+        const auto j = static_cast<std::size_t>(
+            std::find(vertices.begin(), vertices.end(), face.vertices[end]) - vertices.begin());
+        for (std::size_t c = 0; c < 2; ++c) {
+          double apart = (*here)[end][c] - (*there)[j][c];
+          if (space.wrap[c] == WrapMode::repeat) apart -= std::round(apart);  // The texture goes on there.
+          if (std::abs(apart) * space.texture[c] > tolerance) return true;
+        }
+      }
+    }
+  }
+  return false;
+}
+
 /// Meshes with decals for all of their instances as well as for some.
 std::set<std::size_t> find_mixed_meshes(const SolvedJob& job) {
   std::map<std::size_t, std::set<Instance>> kinds;
@@ -205,6 +244,8 @@ std::string reason_of(const SolvedJob& job, const TextureGroup& group, const UvF
     case UvTrouble::shared:
       return fmt::format("{} {} texels that are shown by other triangles too ({} of {}; {})", where, have,
                          finding.shared_texels, finding.covered_texels, slot_names(finding));
+    case UvTrouble::seams:
+      return fmt::format("{} lie on several islands of texture coordinates ({})", where, slot_names(finding));
     case UvTrouble::coarse:
       break;
   }
@@ -322,7 +363,12 @@ Result<std::vector<UvFinding>> find_uv_conflicts(const SolvedJob& job, const Tex
                    [&](MaterialSlot slot) { return writes(decal, slot); });
       if (slots.empty() || finding.triangles.empty()) continue;
       const SpaceState state = find_state(job, spaces[s], coverages[s], finding.triangles);
-      const auto trouble = state.trouble();
+      auto trouble = state.trouble();
+      if (!trouble && job.job.unwrap_seams && decal.uv_conflict == UvConflict::separate &&
+          !finding.mixed_instances && crosses_seams(job, spaces[s], d)) {
+        trouble = UvTrouble::seams;
+        for (std::size_t i = 0; i < finding.triangles.size(); ++i) in_conflict.insert(i);
+      }
       if (!trouble) continue;
       worst = std::min(worst.value_or(*trouble), *trouble);
       finding.slots.insert(finding.slots.end(), slots.begin(), slots.end());
@@ -358,7 +404,7 @@ UvConflictReport report_of(const SolvedJob& job, const TextureGroup& group, cons
     if (report.material->empty()) report.material = fmt::format("material {}", *group.material);
   }
   for (const MaterialSlot slot : finding.slots) report.slots.emplace_back(name_of(slot));
-  constexpr std::array reasons = {"missing", "shared", "coarse"};
+  constexpr std::array reasons = {"missing", "shared", "coarse", "seams"};
   report.reason = reasons.at(static_cast<std::size_t>(finding.trouble));
   constexpr std::array outcomes = {"separate", "error", "share"};
   report.outcome = outcomes.at(static_cast<std::size_t>(finding.outcome));

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numeric>
 #include <optional>
 #include <utility>
 
@@ -97,7 +98,9 @@ class Charting {
   }
 
   void run() {
-    std::vector<std::uint32_t> rest = keep_old_layout();
+    std::vector<std::uint32_t> rest(request_.triangles.size());
+    std::iota(rest.begin(), rest.end(), 0);
+    if (!request_.unwrap) rest = keep_old_layout();
     rest = follow_decals(rest);
     for (const std::uint32_t i : rest) {
       corners[i] = own_corners(job_, request_.triangles[i]);
@@ -124,7 +127,9 @@ class Charting {
       from.push_back(corners[i]);
       to.push_back(texels_of(job_, t, request_.texture));
     }
-    const double density = std::clamp(usual_stretch(from, to), 1.0, most);
+    // Texels that lie askew to the old ones show these as they were when they are finer.
+    const double finer = request_.unwrap ? 2 : 1;
+    const double density = std::clamp(finer * usual_stretch(from, to), 1.0, most);
     for (const std::uint32_t i : chart.triangles)
       for (Texel& corner : corners[i])
         for (double& x : corner) x *= density;

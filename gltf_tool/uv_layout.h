@@ -26,6 +26,7 @@ struct LayoutRequest {
   std::array<int, 2> texture = {0, 0};  ///< Texels of the texture that they show now; 0: none.
   int grid = 1;                         ///< Charts move by multiples of so many texels.
   int created_size = 0;                 ///< Not 0: the atlas is a square of this side, which the charts fill.
+  bool unwrap = false;                  ///< No old layout is kept: all follow the decals' embeddings.
 };
 
 /// A connected piece of an atlas.
@@ -57,8 +58,9 @@ struct UvLayout {
 /// so that what is resampled is the same to the bit: one chart for each connected, unfolded, not overlapping
 /// piece. Those that have no texture coordinates, or such that the decal would be a smear (in some direction
 /// fewer than 1/32 texel for a pixel), are laid out as the decal's embedding is in the plane, at one texel a
-/// pixel or more. Where the old texture has less than 1/2 texel along a tenth of the decals' pixels, the base
-/// colour becomes finer, as far as the old texture's size or the job's texture size allow.
+/// pixel or more; so are all where the request is to unwrap them. Where the old texture has less than 1/2
+/// texel along a tenth of the decals' pixels, the base colour becomes finer, as far as the old texture's size
+/// or the job's texture size allow.
 ///
 /// Errors: not_solved when there are more charts than an atlas of 8192 x 8192 texels has room for.
 Result<UvLayout> lay_out_uvs(const SolvedJob& job, const LayoutRequest& request);

@@ -20,9 +20,11 @@ constexpr double much_stretched = 1.1;    // L2
 constexpr double usual_margin = 0.08;     // of a patch's faces
 constexpr double nearly_all = 0.99;       // of the region
 constexpr double less_area[] = {0.5, 0.25, 0.1};  // of a patch that folds
-constexpr double finer_shares[] = {0.5, 0.25};    // of the region's width: a divided surface's edges
-constexpr double many_parts = 0.5;                // of a patch's faces: fewer would change little
-constexpr double less_isometry = 0.6;             // where all is much stretched
+constexpr double all_of_it = 0.9999;
+constexpr double coarsely_stretched = 1.2;             // L2: finer triangles may help
+constexpr double finer_shares[] = {0.5, 0.25, 0.125};  // of the region's width: a divided surface's edges
+constexpr double many_parts = 2;                       // times a patch's faces: fewer would change little
+constexpr double less_isometry = 0.6;                  // where all is much stretched
 
 /// Whether a map is injective.
 bool is_sound(const DecalMap& map) {
@@ -35,10 +37,9 @@ bool is_bearable(const DecalMap& map) {
          map.quality.l2_stretch < bearably_stretched;
 }
 
-/// Whether parts of it that meet, on the surface or in the plane, keep some of it from being shown.
+/// Whether some of it is not shown, though the surface does not end there.
 bool is_in_its_own_way(const DecalMap& map) {
-  return map.quality.coverage < nearly_all &&
-         (map.status == Coverage::clipped_by_cover || map.status == Coverage::clipped_in_plane);
+  return map.quality.coverage < all_of_it && map.status != Coverage::clipped_by_boundary;
 }
 
 /// What is shown of the region, against how much it is stretched there.
@@ -100,9 +101,11 @@ class Attempts {
            Energy{less_isometry * options_.energy.isometry}});
   }
 
-  /// Whether smaller triangles would not help.
-  [[nodiscard]] bool is_found() const {
-    return best() != nullptr && is_bearable(*best()) && !is_in_its_own_way(*best());
+  /// Whether smaller triangles may lead to more.
+  [[nodiscard]] bool may_gain() const {
+    if (best() == nullptr) return outcome_.error().code == ErrorCode::not_solved;
+    return !is_bearable(*best()) || is_in_its_own_way(*best()) ||
+           best()->quality.l2_stretch > coarsely_stretched;
   }
 
   /// Of the soundest's patch; 0 if all have failed.
@@ -110,8 +113,8 @@ class Attempts {
 
   /// Whether the others, over another surface, have led to more.
   [[nodiscard]] bool is_outdone_by(const Attempts& others) const {
-    if (is_unsolved() || others.is_unsolved()) return !others.is_unsolved();
-    return sounder(*others.best(), *best());
+    if (others.is_unsolved()) return false;
+    return is_unsolved() ? folds(*others.best()) == 0 : sounder(*others.best(), *best());
   }
 
   /// The soundest; or the last error, if all have failed.
@@ -228,7 +231,7 @@ Result<DecalMap> solve_decal(const SurfaceMesh& surface, const DecalInput& input
   std::vector<std::unique_ptr<DividedAttempts>> divided;
   DividedAttempts* best_divided = nullptr;
   for (const double share : finer_shares) {
-    if (!options.divide || best->is_found()) break;
+    if (!options.divide || !best->may_gain()) break;
     auto finer = finer_surface(surface, input, share);
     const std::size_t parts = finer->mesh.faces.size() - surface.faces.size();
     if (static_cast<double>(parts) < many_parts * static_cast<double>(attempts.patch_faces())) continue;

@@ -59,9 +59,11 @@ class UvConflictTest : public testing::Test {
   /// The most that two pictures differ, in steps of 1/255, of the models seen from an angle.
   double picture_difference(const std::string& before, const std::string& after, int azimuth);
 
-  /// The same of the model without the decal and with one that is separated but unseen, so near that no mip
-  /// levels are shown; but for a share of the pixels.
-  double difference_close_up(nlohmann::json job, double ignored);
+  /// The model so near that no mip levels are shown, with the decal separated but unseen, or without it.
+  Image close_up(nlohmann::json job, bool separated, const std::string& model = "model.glb");
+
+  /// The share of two pictures' numbers that differ by more than 2/255.
+  static double share_that_differs(const Image& a, const Image& b);
 
   /// Nothing that the validator says of the output is new.
   void expect_valid(const std::string& output);

@@ -246,6 +246,56 @@ TEST(Overlap, DividedPolesCarryEveryTurn) {
   EXPECT_GE(divided, 9);
 }
 
+/// Turns that lie apart meet nowhere, whether or not the image may lie over itself; nor do few pins lead
+/// astray.
+TEST(Overlap, DividedPolesCarryTurnsThatLieApart) {
+  for (const int sides : {3, 5, 8})
+    for (const auto& [turns, pins] : {std::pair(3.0, 20), {1.0, 2}, {0.5, 4}, {1.0, 1}})
+      for (const Overlap overlap : {Overlap::stop, Overlap::allow}) {
+        SCOPED_TRACE(testing::Message() << sides << " sides, " << turns << " turns, " << pins << " pins");
+        const SurfaceMesh surface = pole(sides, 1, 16, true);
+        const double radius = std::cos(pi / sides);  // of the polygon within, whose sides the pins are on
+        std::vector<Pin> places;
+        for (int k = 0; k <= pins; ++k) {
+          // Along the sides at even steps.
+          const double along = sides * turns * (k + 0.03) / pins;
+          const double side = std::floor(along), angle = 2 * pi * (side + 0.5) / sides;
+          const double off = (along - side - 0.5) * 2 * std::sin(pi / sides);
+          places.push_back({{50 + 1100.0 * k / pins, 50},
+                            {radius * std::cos(angle) - off * std::sin(angle),
+                             radius * std::sin(angle) + off * std::cos(angle), 4 + 2.5 * turns * k / pins}});
+        }
+        SolveOptions options;
+        options.overlap = overlap;
+        options.divide = true;
+        const auto map = solve_decal(surface, decal(surface, ribbon(), places), options);
+        ASSERT_TRUE(map) << map.error().message;
+        expect_exact_and_unfolded(*map);
+        EXPECT_GT(map->quality.coverage, 0.9999);
+        EXPECT_LT(map->quality.l2_stretch, 1.01);
+      }
+}
+
+/// Two corners of an image that are swapped ask for a mirrored part: finer triangles do not mend that.
+TEST(Overlap, SwappedCornersOnAPoleAreNamed) {
+  const SurfaceMesh surface = pole(4, 1, 6, true);
+  SolveOptions options;
+  options.divide = true;
+  const std::vector<Pin> pins = {{{100, 20}, {0.7, 0.3, 2.8}},
+                                 {{1100, 20}, {0.3, 0.7, 3.2}},
+                                 {{1100, 80}, {0.3, 0.7, 2.8}},
+                                 {{100, 80}, {0.7, 0.3, 3.2}},
+                                 {{600, 50}, {0.5, 0.5, 3.0}}};
+  const auto map = solve_decal(surface, decal(surface, ribbon(), pins), options);
+  if (map) {
+    expect_exact_and_unfolded(*map);
+  } else {
+    EXPECT_TRUE(map.error().code == ErrorCode::features_mirrored ||
+                map.error().code == ErrorCode::not_solved);
+    EXPECT_NE(map.error().message.find("feature"), std::string::npos);
+  }
+}
+
 /// How often the map shows the image at most, at points all over it; and at how many of them not at all.
 std::pair<int, int> shown_at_points(const DecalMap& map, const Region& region) {
   int most = 0, bare = 0;
