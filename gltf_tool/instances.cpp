@@ -149,6 +149,14 @@ std::vector<std::string> variants_without(const SolvedDecal& decal, const Model&
   return names;
 }
 
+bool lies_on_skin(const SolvedDecal& decal, const Model& model) {
+  std::set<std::uint32_t> parts;
+  for_textured_sources(decal, [&](const ModelSurface::Source& source) { parts.insert(source.part); });
+  return std::any_of(parts.begin(), parts.end(), [&](std::uint32_t part) {
+    return model.document.json.at("nodes").at(model.parts[part].node).contains("skin");
+  });
+}
+
 bool has_vertex_colours(const SolvedDecal& decal, const Model& model) {
   bool found = false;
   for_textured_sources(decal, [&](const ModelSurface::Source& source) {

@@ -43,6 +43,9 @@ std::set<std::optional<std::size_t>> materials_under(const SolvedDecal& decal, c
 /// shows another material than by default.
 std::vector<std::string> variants_without(const SolvedDecal& decal, const Model& model);
 
+/// Whether a skin moves some of the surface under a decal.
+bool lies_on_skin(const SolvedDecal& decal, const Model& model);
+
 /// Whether vertex colours (COLOR_0) that are not white lie under a decal, and so tint it.
 bool has_vertex_colours(const SolvedDecal& decal, const Model& model);
 

@@ -103,7 +103,7 @@ struct Job {
   int texture_size = 2048;      ///< Texels a side of base colours that the job creates.
   std::uint32_t gutter = 16;    ///< As Transfer::gutter.
   SeamFit seams = SeamFit::sharp;
-  bool unwrap_seams = false;  ///< Triangles under a decal that crosses UV seams are laid out as one piece.
+  bool unwrap_seams = false;  ///< Triangles under a decal that crosses UV seams are laid out anew.
   std::optional<int>
       resolution;  ///< Texels a side of other textures that it creates; none: the base colour's.
   std::vector<DecalJob> decals;  ///< At least one; later ones lie over earlier ones.

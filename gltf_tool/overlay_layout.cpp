@@ -10,17 +10,10 @@
 #include "applique/base/parallel.h"
 
 #include "compositing.h"
+#include "instances.h"
 
 namespace applique {
 namespace {
-
-bool lies_on_skin(const Model& model, const SolvedDecal& decal) {
-  const auto& nodes = model.document.json.at("nodes");
-  return std::any_of(decal.map.patch.faces.begin(), decal.map.patch.faces.end(), [&](const PatchFace& face) {
-    return face.mesh_face.valid() &&
-           nodes.at(model.parts[decal.surface->source(face.mesh_face).part].node).contains("skin");
-  });
-}
 
 constexpr double margin = 16;  // texels: the picture ends in nothing up to mip level 4
 
@@ -131,7 +124,7 @@ void lay_into(DecalMesh& mesh, const ImageFrame& frame, const IdVector<PatchVert
 OverlayLayout lay_out_overlay(const Model& model, const SolvedDecal& decal, double offset) {
   const ImageFrame& frame = decal.region.frame();
   DecalMesh divided = build_overlay_mesh(model, decal, offset);
-  const bool on_skin = lies_on_skin(model, decal);
+  const bool on_skin = lies_on_skin(decal, model);
   if (divided.triangles.empty() || decal.map.groups > 1 || !on_skin)
     return {std::move(divided), straight_chart(frame, 0), on_skin};
   DecalMesh whole = build_whole_mesh(model, decal, offset);

@@ -299,7 +299,7 @@ double plane_units(const SolvedDecal& decal, double max_deviation) {
 }
 
 /// Calls visit(weight, i) for the corners of the source triangle under a place in a face, in the origin's
-/// order: sums are equal for all faces about it.
+/// order: on whole triangles sums are equal for all faces about it.
 template <class Visit>
 void for_corners_under(const SolvedDecal& decal, const Origin& origin, PatchFaceId face, const Visit& visit) {
   const PatchFace& patch_face = decal.map.patch.faces[face];

@@ -625,14 +625,18 @@ class Separation {
       }
     }
     std::map<const ModelSurface*, std::shared_ptr<const ModelSurface>> surfaces;
-    for (SolvedDecal& decal : job_.decals) {
-      auto& followed = surfaces[decal.surface.get()];
+    const auto follow = [&](std::shared_ptr<const ModelSurface>& surface) {
+      auto& followed = surfaces[surface.get()];
       if (!followed) {
-        auto copy = std::make_shared<ModelSurface>(*decal.surface);
+        auto copy = std::make_shared<ModelSurface>(*surface);
         for (auto& source : copy->sources) source = places[source.part][source.triangle];
         followed = std::move(copy);
       }
-      decal.surface = followed;
+      surface = followed;
+    };
+    for (SolvedDecal& decal : job_.decals) {
+      follow(decal.surface);
+      if (decal.whole_surface != nullptr) follow(decal.whole_surface);
     }
   }
 

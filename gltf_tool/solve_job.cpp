@@ -1,9 +1,7 @@
 #include "solve_job.h"
 
-#include <algorithm>
 #include <future>
 #include <map>
-#include <set>
 #include <utility>
 
 #include <fmt/format.h>
@@ -11,6 +9,7 @@
 #include "applique/region/outline.h"
 #include "applique/surface/surface_query.h"
 
+#include "instances.h"
 #include "near_names.h"
 #include "place.h"
 
@@ -165,14 +164,6 @@ DecalInput input_of(const SolvedDecal& decal) {
   return input;
 }
 
-bool has_skin(const Model& model, const ModelSurface& surface) {
-  std::set<std::uint32_t> parts;
-  for (const ModelSurface::Source& source : surface.sources) parts.insert(source.part);
-  return std::any_of(parts.begin(), parts.end(), [&](std::uint32_t part) {
-    return model.document.json.at("nodes").at(model.parts[part].node).contains("skin");
-  });
-}
-
 SolveOptions options_of(const DecalJob& decal) {
   SolveOptions options;
   options.method = decal.method;
@@ -188,30 +179,33 @@ SolveOptions options_of(const DecalJob& decal) {
 /// Whether it is an overlay on a skin: that moves the corners of triangles, between which viewers draw
 /// straight, so that vertices within them would part from the surface.
 bool keeps_to_triangles(const SolvedDecal& decal, const Model& model) {
-  return decal.job.output == DecalOutput::overlay && has_skin(model, *decal.whole_surface);
+  return decal.job.output == DecalOutput::overlay && lies_on_skin(decal, model);
 }
 
-/// Once more, as well as it can be had so; `decal.map` is over parts of the triangles.
+/// Once more, as well as it can be had so; the decal is over parts of the triangles.
 Result<void> solve_on_whole_triangles(SolvedDecal& decal, const SolveOptions& options) {
+  constexpr double notably = 1.1;
   const MapQuality divided = decal.map.quality;
   const std::string why =
-      "the model's triangles are too large for it, and those of an overlay on a skin "
-      "cannot be divided";
-  auto map = solve_decal(decal.whole_surface->mesh, input_of(decal), options);
+      "the model's triangles are too large for it, and those of an overlay on a skin cannot be divided";
+  auto map = of_decal(decal.job, solve_decal(decal.whole_surface->mesh, input_of(decal), options));
   if (!map)
     return fail(map.error().code,
                 fmt::format("{}; {}: give it \"output\": \"bake\"", map.error().message, why));
   decal.map = std::move(*map);
-  constexpr double notably = 1.1;
+  decal.surface = decal.whole_surface;
+  const MapQuality& whole = decal.map.quality;
   const auto worth = [](const MapQuality& quality) { return quality.coverage / quality.l2_stretch; };
-  if (worth(divided) < notably * worth(decal.map.quality)) return {};
+  const auto folds = [](const MapQuality& quality) { return quality.flipped_plane + quality.flipped_image; };
+  if (worth(divided) < notably * worth(whole) && folds(divided) >= folds(whole) &&
+      whole.doubled + whole.left_out < hardly_doubled)
+    return {};
   decal.warnings.push_back(
       {"overlay_coarse",
-       fmt::format(
-           "decal '{}': {}; with \"output\": \"bake\" {:.1f} % of it would be shown in place of {:.1f} %, "
-           "at an L2 stretch of {:.2f} in place of {:.2f}",
-           decal.job.name, why, 100 * divided.coverage, 100 * decal.map.quality.coverage, divided.l2_stretch,
-           decal.map.quality.l2_stretch)});
+       fmt::format("decal '{}': {}; with \"output\": \"bake\" {:.1f} % of it would be shown in place of "
+                   "{:.1f} %, at an L2 stretch of {:.2f} in place of {:.2f}",
+                   decal.job.name, why, 100 * divided.coverage, 100 * whole.coverage, divided.l2_stretch,
+                   whole.l2_stretch)});
   return {};
 }
 
@@ -242,12 +236,11 @@ Result<void> solve_geometry(const Model& model, SurfaceCache& surfaces, SolvedDe
   SolveOptions options = options_of(decal.job);
   if (traced) options.trace = &decal.trace;
   APPLIQUE_TRY(decal.map, of_decal(decal.job, solve_decal(entry->surface->mesh, input_of(decal), options)));
-  if (decal.map.divided != nullptr && keeps_to_triangles(decal, model)) {
+  if (decal.map.divided != nullptr) {
+    decal.surface = std::make_shared<ModelSurface>(divided_surface(*decal.whole_surface, *decal.map.divided));
     options.divide = false;
-    APPLIQUE_CHECK(solve_on_whole_triangles(decal, options));
+    if (keeps_to_triangles(decal, model)) APPLIQUE_CHECK(solve_on_whole_triangles(decal, options));
   }
-  if (decal.map.divided != nullptr)
-    decal.surface = std::make_shared<ModelSurface>(divided_surface(*decal.surface, *decal.map.divided));
   decal.times.add("solve", watch.lap());
   return {};
 }

@@ -58,6 +58,18 @@ struct TextureSpace {
     const auto& list = uvs.at(part);
     return {list[t[0]], list[t[1]], list[t[2]]};
   }
+
+  /// The same of the part that stands for `part`, in the order of its own corners: mirrored nodes exchange
+  /// two.
+  [[nodiscard]] std::optional<std::array<std::array<double, 2>, 3>> corners_under(
+      const Model& model, const DecalJob& decal, std::uint32_t part, std::uint32_t triangle) const {
+    const std::uint32_t standing = part_that_stands_for(model, decal, part);
+    const auto found = uvs.find(standing);
+    if (found == uvs.end() || found->second.empty()) return std::nullopt;
+    auto list = corners(model, standing, triangle);
+    if (model.parts[standing].mirrored != model.parts[part].mirrored) std::swap(list[1], list[2]);
+    return list;
+  }
 };
 
 Result<TextureSpace> space_of(const SolvedJob& job, const TextureGroup& group, MaterialSlot slot) {
@@ -137,13 +149,13 @@ SpaceState find_state(const SolvedJob& job, const TextureSpace& space, const UvC
   SpaceState state;
   for (std::size_t i = 0; i < triangles.size(); ++i) {
     const SeparatedTriangle& t = triangles[i];
-    const std::uint32_t part = part_that_stands_for(job.model, job.decals[t.decal].job, t.part);
-    if (space.uvs.at(part).empty()) {
+    const auto under = space.corners_under(job.model, job.decals[t.decal].job, t.part, t.triangle);
+    if (!under) {
       state.without_uvs = true;
       state.in_conflict.insert(i);
       continue;
     }
-    const auto uvs = space.corners(job.model, part, t.triangle);
+    const auto& uvs = *under;
     const auto count = coverage.under(uvs);
     state.covered_texels += count.covered;
     state.shared_texels += count.shared;
@@ -171,10 +183,7 @@ bool crosses_seams(const SolvedJob& job, const TextureSpace& space, std::size_t 
     const FaceId face = map.patch.faces[f].mesh_face;
     if (map.textured[f] == 0 || !face.valid()) return std::nullopt;
     const auto& source = decal.surface->source(face);
-    const std::uint32_t part = part_that_stands_for(job.model, decal.job, source.part);
-    const auto uvs = space.uvs.find(part);
-    if (uvs == space.uvs.end() || uvs->second.empty()) return std::nullopt;
-    return space.corners(job.model, part, source.triangle);
+    return space.corners_under(job.model, decal.job, source.part, source.triangle);
   };
   for (const PatchFaceId f : ids<PatchFaceId>(map.patch.faces.size())) {
     const auto here = corners_of(f);

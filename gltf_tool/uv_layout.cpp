@@ -100,8 +100,9 @@ class Charting {
   void run() {
     std::vector<std::uint32_t> rest(request_.triangles.size());
     std::iota(rest.begin(), rest.end(), 0);
-    if (!request_.unwrap) rest = keep_old_layout();
-    rest = follow_decals(rest);
+    if (request_.unwrap) rest = follow_decals(rest);
+    rest = keep_old_layout(rest);
+    if (!request_.unwrap) rest = follow_decals(rest);
     for (const std::uint32_t i : rest) {
       corners[i] = own_corners(job_, request_.triangles[i]);
       charts.push_back({{i}, false, {0, 0}, {0, 0, 0, 0}});
@@ -154,12 +155,12 @@ class Charting {
   }
 
   /// Returns the triangles that cannot keep theirs.
-  std::vector<std::uint32_t> keep_old_layout() {
+  std::vector<std::uint32_t> keep_old_layout(const std::vector<std::uint32_t>& triangles) {
     std::map<std::array<double, 5>, std::uint32_t> places;
     std::vector<std::uint32_t> members;
     std::vector<ChartTriangle> list;
     std::vector<std::uint32_t> rest;
-    for (std::uint32_t i = 0; i < request_.triangles.size(); ++i) {
+    for (const std::uint32_t i : triangles) {
       const SeparatedTriangle& t = request_.triangles[i];
       if (!has_texture_space(job_, t, request_.texture)) {
         rest.push_back(i);
@@ -368,9 +369,15 @@ std::string no_room(const SolvedJob& job, const LayoutRequest& request) {
 double pixels_on(const SolvedJob& job, const SeparatedTriangle& t) {
   const SolvedDecal& decal = job.decals[t.decal];
   double pixels = 0;
-  for (const PatchFaceId f : t.faces)
-    pixels += 0.5 * std::abs(doubled_area(pixel_corners(decal, decal.map.image, decal.map.patch.faces[f])));
-  return pixels;
+  double share = 0;  // of the triangle, that the faces are
+  for (const PatchFaceId f : t.faces) {
+    const PatchFace& face = decal.map.patch.faces[f];
+    pixels += 0.5 * std::abs(doubled_area(pixel_corners(decal, decal.map.image, face)));
+    const FaceCorners& corners = decal.surface->corners_in_source(face.mesh_face);
+    share += std::abs(doubled_area({Texel{corners[0][1], corners[0][2]}, Texel{corners[1][1], corners[1][2]},
+                                    Texel{corners[2][1], corners[2][2]}}));
+  }
+  return share > 0 ? pixels / share : 0;
 }
 
 std::array<Texel, 3> texels_of(const SolvedJob& job, const SeparatedTriangle& t,

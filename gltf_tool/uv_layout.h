@@ -12,7 +12,7 @@
 
 namespace applique {
 
-/// A triangle of the model that is to have texture space of its own, and the patch face of a decal over it.
+/// A triangle of the model that is to have texture space of its own, and what a decal has over it.
 struct SeparatedTriangle {
   std::uint32_t part = 0;          ///< Index in Model::parts.
   std::uint32_t triangle = 0;      ///< Index in its triangles.
@@ -26,7 +26,7 @@ struct LayoutRequest {
   std::array<int, 2> texture = {0, 0};  ///< Texels of the texture that they show now; 0: none.
   int grid = 1;                         ///< Charts move by multiples of so many texels.
   int created_size = 0;                 ///< Not 0: the atlas is a square of this side, which the charts fill.
-  bool unwrap = false;                  ///< No old layout is kept: all follow the decals' embeddings.
+  bool unwrap = false;                  ///< The decals' embeddings come first, then the old layout.
 };
 
 /// A connected piece of an atlas.
@@ -73,7 +73,7 @@ bool has_texture_space(const SolvedJob& job, const SeparatedTriangle& triangle,
 bool is_fine_enough(const SolvedJob& job, const SeparatedTriangle& triangle,
                     const std::array<Texel, 3>& texels);
 
-/// The pixels of the decal's image on a triangle.
+/// The pixels of the decal's image on a triangle; on one that it has parts of, as many as if it had all.
 double pixels_on(const SolvedJob& job, const SeparatedTriangle& triangle);
 
 /// Its texture coordinates, in texels of a texture of this size.

@@ -24,6 +24,7 @@ constexpr double all_of_it = 0.9999;
 constexpr double coarsely_stretched = 1.2;             // L2: finer triangles may help
 constexpr double finer_shares[] = {0.5, 0.25, 0.125};  // of the region's width: a divided surface's edges
 constexpr double many_parts = 2;                       // times a patch's faces: fewer would change little
+constexpr double some_gain = 1.005;                    // times the worth: less is not worth the parts
 constexpr double less_isometry = 0.6;                  // where all is much stretched
 
 /// Whether a map is injective.
@@ -114,7 +115,10 @@ class Attempts {
   /// Whether the others, over another surface, have led to more.
   [[nodiscard]] bool is_outdone_by(const Attempts& others) const {
     if (others.is_unsolved()) return false;
-    return is_unsolved() ? folds(*others.best()) == 0 : sounder(*others.best(), *best());
+    if (is_unsolved()) return folds(*others.best()) == 0;
+    if (is_sound(*others.best()) && is_sound(*best()))
+      return worth(*others.best()) > some_gain * worth(*best());
+    return sounder(*others.best(), *best());
   }
 
   /// The soundest; or the last error, if all have failed.
@@ -228,16 +232,17 @@ Result<DecalMap> solve_decal(const SurfaceMesh& surface, const DecalInput& input
   attempts.make();
   // Paths and turns that share a coarse model's triangles may have their own in a finer one.
   const Attempts* best = &attempts;
-  std::vector<std::unique_ptr<DividedAttempts>> divided;
-  DividedAttempts* best_divided = nullptr;
+  std::unique_ptr<DividedAttempts> best_divided;
+  const double least_parts = many_parts * static_cast<double>(attempts.patch_faces());
   for (const double share : finer_shares) {
-    if (!options.divide || !best->may_gain()) break;
+    if (!options.divide || !best->may_gain() || least_parts > Division::most_parts) break;
     auto finer = finer_surface(surface, input, share);
-    const std::size_t parts = finer->mesh.faces.size() - surface.faces.size();
-    if (static_cast<double>(parts) < many_parts * static_cast<double>(attempts.patch_faces())) continue;
-    divided.push_back(std::make_unique<DividedAttempts>(std::move(finer), input, options));
-    if (!best->is_outdone_by(divided.back()->attempts())) continue;
-    best_divided = divided.back().get();
+    if (finer == nullptr ||
+        static_cast<double>(finer->mesh.faces.size() - surface.faces.size()) < least_parts)
+      continue;
+    auto tried = std::make_unique<DividedAttempts>(std::move(finer), input, options);
+    if (!best->is_outdone_by(tried->attempts())) continue;
+    best_divided = std::move(tried);
     best = &best_divided->attempts();
   }
   return best_divided != nullptr ? best_divided->finish() : attempts.finish();

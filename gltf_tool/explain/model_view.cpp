@@ -40,7 +40,7 @@ std::vector<std::vector<FaceId>> cut_as_in_surface(std::vector<ModelPart>& parts
   std::vector<std::vector<std::array<std::uint32_t, 3>>> whole;
   for (const ModelPart& part : parts) whole.push_back(part.triangles);
   for (const FaceId f : ids<FaceId>(surface.mesh.faces.size())) {
-    const auto& [p, t] = surface.source(f);
+    const std::uint32_t p = surface.source(f).part, t = surface.source(f).triangle;
     ModelPart& part = parts[p];
     if (surface.is_whole(f)) {
       faces[p][t] = f;

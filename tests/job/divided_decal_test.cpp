@@ -10,6 +10,7 @@
 #include "cli/command.h"
 #include "cli/small_model.h"
 #include "overlay_mesh.h"
+#include "save_document.h"
 #include "solve_job.h"
 
 using namespace applique;
@@ -56,34 +57,42 @@ std::array<double, 2> uv_of(const Vec3& place, int side) {
   return {(side + 0.05 + 0.9 * end) / sides, 1 - place.z() / height};
 }
 
+/// Along the middle of a ribbon that winds round the pole.
+json pins_of(double turns, int pins) {
+  json features = json::array();
+  for (int k = 0; k <= pins; ++k) {
+    const double turn = turns * k / pins + 0.02;
+    const double s = sides * turn - std::floor(sides * turn);
+    const int side = static_cast<int>(sides * turn);
+    const Vec3 place = (1 - s) * foot(side) + s * foot(side + 1) + Vec3(0, 0, 2 + 0.9 * turn);
+    features.push_back(
+        {{"image", {50 + 1500.0 * k / pins, 50}}, {"position", {place.x(), place.y(), place.z()}}});
+  }
+  return features;
+}
+
 /// A ribbon two and a half times round the pole, which only a finer one can carry.
 class DividedDecalTest : public testing::Test {
  protected:
   void SetUp() override {
     write_small_model(folder_ / "model.glb", {make_pole()}, {{"paint", make_noise(256), {1, 1, 1, 1}}});
     write_png(folder_ / "image.png", make_image(1600, 100, {65535, 0, 0, 65535}));
-    json features = json::array();
-    constexpr int pins = 16;
-    for (int k = 0; k <= pins; ++k) {
-      const double turn = 2.5 * k / pins + 0.02;
-      const double s = sides * turn - std::floor(sides * turn);
-      const int side = static_cast<int>(sides * turn);
-      const Vec3 place = (1 - s) * foot(side) + s * foot(side + 1) + Vec3(0, 0, 2 + 0.9 * turn);
-      features.push_back(
-          {{"image", {50 + 1500.0 * k / pins, 50}}, {"position", {place.x(), place.y(), place.z()}}});
-    }
     folder_.write("job.json", {{"version", 1},
                                {"model", "model.glb"},
                                {"decals", json::array({{{"name", "ribbon"},
                                                         {"image", "image.png"},
                                                         {"overlap", "allow"},
-                                                        {"features", features}}})}});
+                                                        {"features", pins_of(2.5, 16)}}})}});
+    solve();
+    ASSERT_NE(decal().map.divided, nullptr);
+  }
+
+  void solve() {
     const auto job = load_job(folder_ / "job.json");
     ASSERT_TRUE(job) << job.error().message;
     auto solved = solve_job(*job);
     ASSERT_TRUE(solved) << solved.error().message;
     job_ = std::move(*solved);
-    ASSERT_NE(decal().map.divided, nullptr);
   }
 
   const SolvedDecal& decal() const { return job_.decals.front(); }
@@ -126,6 +135,27 @@ TEST_F(DividedDecalTest, PartsLieWhereTheyAreInTheTexture) {
   }
   EXPECT_EQ(i, transfer.faces.size());
   EXPECT_GT(i, 3 * 6U);
+}
+
+/// A skin moves corners, and what a viewer draws between them is straight.
+TEST_F(DividedDecalTest, AnOverlayOnASkinKeepsToWholeTrianglesAndSaysSo) {
+  Document document = load_document(folder_ / "model.glb").value();
+  document.json["skins"] = {{{"joints", {1}}}};
+  document.json["nodes"].push_back({{"name", "joint"}});
+  document.json["nodes"][0]["skin"] = 0;
+  ASSERT_TRUE(save_document(document, folder_ / "model.glb"));
+  json job = json::parse(folder_.read("job.json"));
+  ASSERT_NO_FATAL_FAILURE(solve());
+  EXPECT_NE(decal().map.divided, nullptr) << "a bake may have parts";
+  job["decals"][0]["output"] = "overlay";
+  job["decals"][0]["overlap"] = "stop";
+  job["decals"][0]["features"] = pins_of(3, 12);
+  folder_.write("job.json", job);
+  ASSERT_NO_FATAL_FAILURE(solve());
+  EXPECT_EQ(decal().map.divided, nullptr);
+  EXPECT_EQ(decal().surface, decal().whole_surface);
+  EXPECT_TRUE(std::any_of(decal().warnings.begin(), decal().warnings.end(),
+                          [](const Warning& warning) { return warning.code == "overlay_coarse"; }));
 }
 
 TEST_F(DividedDecalTest, ItsMeshLiesOnTheSides) {

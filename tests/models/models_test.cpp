@@ -301,6 +301,8 @@ TEST_F(Models, UnwrappedSeamsAreNone) {
     BakedColours baked;
     ASSERT_NO_FATAL_FAILURE(bake_colours(solved, plan_base_colours(solved), *gpu, baked));
     if (in_one_piece.contains(job.name)) {
+      ASSERT_FALSE(separated->conflicts.front().empty());
+      EXPECT_EQ(separated->conflicts.front().front().reason, "seams");
       EXPECT_EQ(baked.seams.size(), 0U);
     }
     // A decal that winds over itself in the plane takes more than one piece.

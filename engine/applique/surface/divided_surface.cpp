@@ -17,11 +17,43 @@ Eigen::Matrix3d columns(const FaceCorners& corners) {
   return m;
 }
 
+struct LongestEdge {
+  int k;
+  double squared_length;
+};
+
+LongestEdge longest_edge(const SurfaceMesh& mesh, FaceId f) {
+  const auto p = mesh.corners(f);
+  LongestEdge longest = {0, -1};
+  for (int k = 0; k < 3; ++k) {
+    const double squared = (p[(k + 2) % 3] - p[(k + 1) % 3]).squaredNorm();
+    if (squared > longest.squared_length) longest = {k, squared};
+  }
+  return longest;
+}
+
+std::vector<Vec3> positions_of(const SurfaceMesh& mesh, std::span<const SurfacePoint> places) {
+  std::vector<Vec3> positions;
+  for (const SurfacePoint& place : places) positions.push_back(position_of(mesh, place));
+  return positions;
+}
+
+/// Whether the face has an edge that is too long, and any of the places may be within reach of it.
+bool is_to_be_cut(const SurfaceMesh& mesh, FaceId f, const std::vector<Vec3>& places,
+                  const Division& division) {
+  if (longest_edge(mesh, f).squared_length <= division.longest_edge * division.longest_edge) return false;
+  const auto p = mesh.corners(f);
+  const Vec3 middle = (p[0] + p[1] + p[2]) / 3;
+  double radius = 0;
+  for (const Vec3& corner : p) radius = std::max(radius, (corner - middle).norm());
+  return std::any_of(places.begin(), places.end(),
+                     [&](const Vec3& place) { return (place - middle).norm() <= division.reach + radius; });
+}
+
 class Divider {
  public:
   Divider(const SurfaceMesh& mesh, std::span<const SurfacePoint> places, const Division& division)
-      : division_(division) {
-    for (const SurfacePoint& place : places) places_.push_back(position_of(mesh, place));
+      : division_(division), places_(positions_of(mesh, places)) {
     out_.mesh = mesh;
     const auto all = ids<FaceId>(mesh.faces.size());
     out_.whole.reserve(mesh.faces.size());
@@ -30,54 +62,28 @@ class Divider {
   }
 
   DividedSurface run() {
-    const std::size_t most = out_.mesh.faces.size() + division_.most_parts;
+    const std::size_t most = out_.mesh.faces.size() + division_.parts;
     for (const FaceId f : ids<FaceId>(out_.mesh.faces.size())) consider(f);
     while (!queue_.empty() && out_.mesh.faces.size() < most) {
       const auto [length, f] = queue_.top();
       queue_.pop();
-      if (length == longest_edge(f).squared_length) bisect(f);
+      if (length == longest_edge(out_.mesh, f).squared_length) bisect(f);
     }
     return std::move(out_);
   }
 
  private:
-  struct Edge {
-    int k;
-    double squared_length;
-  };
-
-  [[nodiscard]] Edge longest_edge(FaceId f) const {
-    const auto p = out_.mesh.corners(f);
-    Edge longest = {0, -1};
-    for (int k = 0; k < 3; ++k) {
-      const double squared = (p[(k + 2) % 3] - p[(k + 1) % 3]).squaredNorm();
-      if (squared > longest.squared_length) longest = {k, squared};
-    }
-    return longest;
-  }
-
-  /// Whether any of the places may be within reach of the face.
-  [[nodiscard]] bool is_near(FaceId f) const {
-    const auto p = out_.mesh.corners(f);
-    const Vec3 middle = (p[0] + p[1] + p[2]) / 3;
-    double radius = 0;
-    for (const Vec3& corner : p) radius = std::max(radius, (corner - middle).norm());
-    return std::any_of(places_.begin(), places_.end(), [&](const Vec3& place) {
-      return (place - middle).norm() <= division_.reach + radius;
-    });
-  }
-
   void consider(FaceId f) {
-    const double squared = longest_edge(f).squared_length;
-    if (squared > division_.longest_edge * division_.longest_edge && is_near(f)) queue_.push({squared, f});
+    if (is_to_be_cut(out_.mesh, f, places_, division_))
+      queue_.push({longest_edge(out_.mesh, f).squared_length, f});
   }
 
   /// Cuts the longest edge of f, and before it what is longer in the face beyond.
   void bisect(FaceId f) {
     while (true) {
-      const Edge edge = longest_edge(f);
+      const LongestEdge edge = longest_edge(out_.mesh, f);
       const FaceId beyond = out_.mesh.neighbours[f][edge.k];
-      if (!beyond.valid() || longest_edge(beyond).squared_length <= edge.squared_length) {
+      if (!beyond.valid() || longest_edge(out_.mesh, beyond).squared_length <= edge.squared_length) {
         cut(f, edge.k);
         return;
       }
@@ -151,13 +157,15 @@ SurfacePoint DividedSurface::to_part(const SurfacePoint& point) const {
   const Vec3 at = Eigen::Map<const Vec3>(point.barycentric.data());
   SurfacePoint best;
   double deepest = -std::numeric_limits<double>::infinity();
-  for (const FaceId f : ids<FaceId>(whole.size())) {
-    if (whole[f] != point.face) continue;
+  const auto consider = [&](FaceId f) {
     const Vec3 weights = columns(corners[f]).inverse() * at;
-    if (weights.minCoeff() <= deepest) continue;
+    if (weights.minCoeff() <= deepest) return;
     deepest = weights.minCoeff();
     best = {f, {weights[0], weights[1], weights[2]}};
-  }
+  };
+  consider(point.face);  // Which is a part of itself; the others come after all whole faces.
+  for (std::size_t f = whole.size(); f-- > 0 && whole[FaceId(f)] != FaceId(f);)
+    if (whole[FaceId(f)] == point.face) consider(FaceId(f));
   double sum = 0;
   for (double& weight : best.barycentric) sum += weight = std::max(weight, 0.0);
   for (double& weight : best.barycentric) weight /= sum;
@@ -167,6 +175,14 @@ SurfacePoint DividedSurface::to_part(const SurfacePoint& point) const {
 SurfacePoint DividedSurface::to_whole(const SurfacePoint& point) const {
   const Vec3 weights = columns(corners[point.face]) * Eigen::Map<const Vec3>(point.barycentric.data());
   return {whole[point.face], {weights[0], weights[1], weights[2]}};
+}
+
+bool would_divide(const SurfaceMesh& mesh, std::span<const SurfacePoint> places, const Division& division) {
+  const std::vector<Vec3> positions = positions_of(mesh, places);
+  const auto faces = ids<FaceId>(mesh.faces.size());
+  for (const FaceId f : faces)
+    if (is_to_be_cut(mesh, f, positions, division)) return true;
+  return false;
 }
 
 DividedSurface divide_surface(const SurfaceMesh& mesh, std::span<const SurfacePoint> places,

@@ -27,10 +27,15 @@ struct DividedSurface {
 
 /// How finely a surface is divided where.
 struct Division {
-  double longest_edge;              ///< Of the parts, scene units, > 0.
-  double reach;                     ///< From the places, scene units: what is further away stays as it is.
-  std::size_t most_parts = 40'000;  ///< Of all that are cut; then the longest edges are shorter than before.
+  double longest_edge;             ///< Of the parts, scene units, > 0.
+  double reach;                    ///< From the places, scene units: what is further away stays as it is.
+  std::size_t parts = most_parts;  ///< At most, of all that are cut: then edges stay longer.
+
+  static constexpr std::size_t most_parts = 40'000;
 };
+
+/// Whether any face is to be cut.
+bool would_divide(const SurfaceMesh& mesh, std::span<const SurfacePoint> places, const Division& division);
 
 /// Cuts the longest edges first, each at its middle and for both its faces, where it is the longest of both:
 /// other edges of a neighbour go before (Rivara 1984), so that angles do not become smaller than half the
