@@ -20,12 +20,17 @@ constexpr double much_stretched = 1.1;    // L2
 constexpr double usual_margin = 0.08;     // of a patch's faces
 constexpr double nearly_all = 0.99;       // of the region
 constexpr double less_area[] = {0.5, 0.25, 0.1};  // of a patch that folds
-constexpr double all_of_it = 0.9999;
-constexpr double coarsely_stretched = 1.2;             // L2: finer triangles may help
-constexpr double finer_shares[] = {0.5, 0.25, 0.125};  // of the region's width: a divided surface's edges
-constexpr double many_parts = 2;                       // times a patch's faces: fewer would change little
-constexpr double some_gain = 1.005;                    // times the worth: less is not worth the parts
-constexpr double less_isometry = 0.6;                  // where all is much stretched
+constexpr double coarsely_stretched = 1.2;        // L2: finer triangles may help
+constexpr double many_parts = 2;                  // times a patch's faces: fewer would change little
+constexpr double some_gain = 1.005;               // times the worth: less is not worth the parts
+constexpr double less_isometry = 0.6;             // where all is much stretched
+
+/// How finely a surface is divided, and for what: the finest takes long.
+struct Fineness {
+  double share;   ///< Of the region's width: the edges.
+  double enough;  ///< Of the region, to be shown: then it is not tried.
+};
+constexpr Fineness finenesses[] = {{0.5, 0.9999}, {0.25, 0.9999}, {0.125, nearly_all}};
 
 /// Whether a map is injective.
 bool is_sound(const DecalMap& map) {
@@ -38,9 +43,9 @@ bool is_bearable(const DecalMap& map) {
          map.quality.l2_stretch < bearably_stretched;
 }
 
-/// Whether some of it is not shown, though the surface does not end there.
-bool is_in_its_own_way(const DecalMap& map) {
-  return map.quality.coverage < all_of_it && map.status != Coverage::clipped_by_boundary;
+/// Whether less than a share of it is shown, though the surface does not end there.
+bool is_in_its_own_way(const DecalMap& map, double share) {
+  return map.quality.coverage < share && map.status != Coverage::clipped_by_boundary;
 }
 
 /// What is shown of the region, against how much it is stretched there.
@@ -69,8 +74,9 @@ bool may_stretch_elsewhere(const DecalMap& map) {
 /// The attempts at a decal over one surface, of which the soundest is kept.
 class Attempts {
  public:
-  Attempts(const SurfaceMesh& surface, const DecalInput& input, const SolveOptions& options)
-      : surface_(surface), input_(input), options_(options) {}
+  Attempts(const SurfaceMesh& surface, const DecalInput& input, const SolveOptions& options,
+           bool unfolds = true)
+      : surface_(surface), input_(input), options_(options), unfolds_(unfolds) {}
 
   /// Makes one after another, each where those before it give reason to.
   void make() {
@@ -102,10 +108,10 @@ class Attempts {
            Energy{less_isometry * options_.energy.isometry}});
   }
 
-  /// Whether smaller triangles may lead to more.
-  [[nodiscard]] bool may_gain() const {
+  /// Whether smaller triangles may lead to more, where `enough` of the region need not.
+  [[nodiscard]] bool may_gain(double enough) const {
     if (best() == nullptr) return outcome_.error().code == ErrorCode::not_solved;
-    return !is_bearable(*best()) || is_in_its_own_way(*best()) ||
+    return !is_bearable(*best()) || is_in_its_own_way(*best(), enough) ||
            best()->quality.l2_stretch > coarsely_stretched;
   }
 
@@ -144,8 +150,10 @@ class Attempts {
     rank();
   }
 
-  /// Unfolds those that fold, the soundest first, until one is bearable.
+  /// Unfolds those that fold, the soundest first, until one is bearable. Over parts of triangles this takes
+  /// long, and finer ones do without.
   void unfold() {
+    if (!unfolds_) return;
     for (DecalSolver& solver : solvers_) {
       if (folds(solver.map()) > 0) solver.unfold();
       if (is_bearable(solver.map())) break;
@@ -166,6 +174,7 @@ class Attempts {
   const SurfaceMesh& surface_;
   const DecalInput& input_;
   const SolveOptions& options_;
+  bool unfolds_;
   std::vector<DecalSolver> solvers_;  ///< That have not failed, the soundest first.
   Result<void> outcome_;              ///< Of the last.
   Result<void> unmet_;                ///< Of the last that was not solved.
@@ -177,7 +186,7 @@ class DividedAttempts {
  public:
   DividedAttempts(std::shared_ptr<const DividedSurface> divided, const DecalInput& input,
                   const SolveOptions& options)
-      : divided_(std::move(divided)), input_(input), attempts_(divided_->mesh, input_, options) {
+      : divided_(std::move(divided)), input_(input), attempts_(divided_->mesh, input_, options, false) {
     for (Feature& feature : input_.features) feature.surface = divided_->to_part(feature.surface);
     attempts_.make();
   }
@@ -234,8 +243,8 @@ Result<DecalMap> solve_decal(const SurfaceMesh& surface, const DecalInput& input
   const Attempts* best = &attempts;
   std::unique_ptr<DividedAttempts> best_divided;
   const double least_parts = many_parts * static_cast<double>(attempts.patch_faces());
-  for (const double share : finer_shares) {
-    if (!options.divide || !best->may_gain() || least_parts > Division::most_parts) break;
+  for (const auto& [share, enough] : finenesses) {
+    if (!options.divide || !best->may_gain(enough) || least_parts > Division::most_parts) break;
     auto finer = finer_surface(surface, input, share);
     if (finer == nullptr ||
         static_cast<double>(finer->mesh.faces.size() - surface.faces.size()) < least_parts)
