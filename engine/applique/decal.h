@@ -67,9 +67,9 @@ struct SolveOptions {
   PlanarLimits planar;                ///< Of Method::planar.
   Parents parents = Parents::upwind;  ///< Of Method::expmap.
   int max_solves = 60;                ///< Embeddings before giving up.
-  /// Where the surface's triangles are too large for the decal (it would fold, or parts of it that lie over
-  /// one another share a triangle), they are cut, and the patch is over the parts: DecalMap::divided. Not
-  /// set, such a decal is not solved, or folds. Method::applique only.
+  /// Where the surface's triangles are too large for the decal (it would fold, be cut off or much stretched,
+  /// or parts of it that lie over one another share a triangle), they are cut, and the patch is over the
+  /// parts: DecalMap::divided. Not set, such a decal is not solved, or folds. Method::applique only.
   bool divide = false;
   SolveTrace* trace = nullptr;  ///< Told what happened, when given.
   bool check_patch =
@@ -120,9 +120,9 @@ struct DecalMap {
 };
 
 /// Solves one decal, by the method that the options name. "applique": §2 to §6 of the design; its cost
-/// follows the patch, not the surface. Errors, each naming the decal and the features:
-/// feature_outside_region, features_coincide, size_missing, features_disconnected, features_mirrored,
-/// not_solved.
+/// follows the patch, not the surface, but where it divides that, which copies it. Errors, each naming the
+/// decal and the features: feature_outside_region, features_coincide, size_missing, features_disconnected,
+/// features_mirrored, not_solved.
 Result<DecalMap> solve_decal(const SurfaceMesh& surface, const DecalInput& input,
                              const SolveOptions& options = {});
 
