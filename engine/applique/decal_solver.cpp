@@ -13,6 +13,7 @@
 #include "applique/decal_warnings.h"
 #include "applique/embed/align.h"
 #include "applique/embed/self_overlap.h"
+#include "applique/features_at_fault.h"
 #include "applique/linear_faces.h"
 #include "applique/lone_alignment.h"
 #include "applique/patch/patch_influence.h"
@@ -96,7 +97,6 @@ class DecalSolver::Work {
     const ImmersedDisc& disc = seed_->disc;
     const std::vector<PlacedPoint> features = placed_features(disc, *growth_, 1);
     Unfolded unfolded = unfold_image(measure_disc(disc), scale_, map_.image.raw(), features);
-    at_fault_ = std::move(unfolded.at_fault);
     if (unfolded.flips > 0) return;
     unfolded_ = folds(map_);
     for (PatchVertexId v : ids<PatchVertexId>(points_.size()))
@@ -106,7 +106,12 @@ class DecalSolver::Work {
     describe(disc, *growth_);
   }
 
-  DecalMap finish() {
+  Result<DecalMap> finish() {
+    if (folds(map_) > 0) {
+      const std::vector<Vec2> features = feature_places(seed_->disc, *growth_, map_.plane.raw());
+      if (all_turned(features, map_.graph.triangles)) return fail_mirrored(input_);
+      at_fault_ = features_at_fault(surface_, input_.region, map_, features, targets_, groups_);
+    }
     warn();
     return std::move(map_);
   }
@@ -144,8 +149,7 @@ class DecalSolver::Work {
   /// Embeds, aligns and warps the disc as it is: points_ and warp_.
   Result<void> parameterize(const ImmersedDisc& disc, const Growth& growth, const EmbedOptions& options) {
     ++map_.solves;
-    std::vector<Vec2> features(targets_.size());
-    std::vector<Vec2> plane;
+    std::vector<Vec2> features, plane;
     const bool guided = options_.guide && !options.rough && groups_.count == 1 &&
                         ask_little(map_.stress, input_.region.diameter());
     {
@@ -160,8 +164,7 @@ class DecalSolver::Work {
           embed_disc(measure_disc(disc), {options.energy, options.rough, guide, weights_}, start);
       rung_ = embedding.rung;
       plane = std::move(embedding.plane);
-      for (std::size_t k = 0; k < features.size(); ++k)
-        features[k] = interpolate(disc, growth.feature_faces()[k], input_.features[k].surface, plane);
+      features = feature_places(disc, growth, plane);
       for (std::size_t v = 0; v < plane.size(); ++v) points_[PatchVertexId(v)].plane = plane[v];
       if (!guided) choose_groups(disc, growth, features);
       APPLIQUE_CHECK(align(disc, growth, features, plane));
@@ -235,19 +238,19 @@ class DecalSolver::Work {
     return {};
   }
 
-  /// Features of several turns may have one triangle of the patch between them: no warp parts these.
+  /// Features of several turns may have one triangle of the patch between them: no warp parts these. Nor does
+  /// one part places that all but coincide on the surface and lie far apart in the image.
   [[nodiscard]] Result<void> check_met() const {
     const std::vector<double>& residual = map_.quality.feature_residual;
     std::vector<std::string> missed;
     for (std::size_t k = 0; k < residual.size(); ++k)
       if (!(residual[k] < met_px)) missed.push_back(feature_name(input_, k));
     if (missed.empty()) return {};
-    return fail(
-        ErrorCode::not_solved,
-        fmt::format("decal '{}': {} cannot be met: parts of the image that lie over one another there "
-                    "share a triangle, and the model has too few; divide it more finely, or move "
-                    "{} apart",
-                    input_.name, fmt::join(missed, ", "), missed.size() > 1 ? "them" : "it"));
+    return fail(ErrorCode::not_solved,
+                fmt::format("decal '{}': {} cannot be met: too near on the surface to other features, or to "
+                            "parts of the image "
+                            "that lie over one another there; move {} apart, or divide the model more finely",
+                            input_.name, fmt::join(missed, ", "), missed.size() > 1 ? "them" : "it"));
   }
 
   static bool coincide(const std::vector<Vec2>& features) {
@@ -316,6 +319,15 @@ class DecalSolver::Work {
     Vec2 z = 0;
     for (int k = 0; k < 3; ++k) z += point.barycentric[k] * plane[disc.faces()[q].vertices[k].value];
     return z;
+  }
+
+  /// Where the features are in the plane.
+  [[nodiscard]] std::vector<Vec2> feature_places(const ImmersedDisc& disc, const Growth& growth,
+                                                 const std::vector<Vec2>& plane) const {
+    std::vector<Vec2> places;
+    for (std::size_t k = 0; k < targets_.size(); ++k)
+      places.push_back(interpolate(disc, growth.feature_faces()[k], input_.features[k].surface, plane));
+    return places;
   }
 
   /// Places between the features, where the warp bends most; with groups, vertices all over the patch.
@@ -437,9 +449,7 @@ class DecalSolver::Work {
       step.image.push_back(point.image);
     }
     step.inside = growth.inside(points_);
-    for (std::size_t k = 0; k < targets_.size(); ++k)
-      step.features.push_back(
-          interpolate(disc, growth.feature_faces()[k], input_.features[k].surface, step.plane.raw()));
+    step.features = feature_places(disc, growth, step.plane.raw());
     step.contour = divided_contour();
     if (warp_.steps > 0) {
       std::vector<double> influence(groups_.count);
@@ -491,13 +501,12 @@ class DecalSolver::Work {
     map_.quality = measure_quality(surface_, map_.patch, map_.plane, map_.image, map_.textured, map_.warp,
                                    input_.region, map_.influence);
     map_.quality.left_out = left_out;
+    const std::vector<Vec2> places = feature_places(disc, growth, map_.plane.raw());
     for (std::size_t k = 0; k < targets_.size(); ++k) {
       const auto& corners = disc.faces()[growth.feature_faces()[k]].vertices;
       const std::vector<double> influence =
           map_.influence_at(corners, input_.features[k].surface.barycentric);
-      const Vec2 place =
-          interpolate(disc, growth.feature_faces()[k], input_.features[k].surface, map_.plane.raw());
-      map_.quality.feature_residual.push_back(std::abs(map_.warp(place, influence) - targets_[k]) *
+      map_.quality.feature_residual.push_back(std::abs(map_.warp(places[k], influence) - targets_[k]) *
                                               input_.region.frame().pixels_per_unit());
     }
     // Only beyond the region, then, could the patch have gone on.
@@ -530,10 +539,13 @@ class DecalSolver::Work {
       std::vector<std::string> names;
       for (const std::uint32_t k : at_fault_) names.push_back(feature_name(input_, k));
       add("features_fold",
-          fmt::format("{} force the image to fold: without {} it would lie flat; move {}, or check the "
-                      "place",
-                      fmt::join(names, " and "), names.size() > 1 ? "them" : "it",
-                      names.size() > 1 ? "them" : "it"));
+          names.size() > 1
+              ? fmt::format("{} force the image to fold: without them it would lie flat; move them, or check "
+                            "that they are not swapped",
+                            fmt::join(names, " and "))
+              : fmt::format("{} forces the image to fold: without it it would lie flat; move it, or check "
+                            "its place",
+                            names.front()));
     }
     if (rung_ == EmbeddingRung::circle)
       add("embedding_on_circle", "the conformal map folded; a flip-free one took its place");
@@ -585,7 +597,7 @@ void DecalSolver::unfold() {
   work_->unfold();
 }
 
-DecalMap DecalSolver::finish() {
+Result<DecalMap> DecalSolver::finish() {
   return work_->finish();
 }
 

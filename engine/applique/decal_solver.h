@@ -33,8 +33,9 @@ class DecalSolver {
   /// Where the embedding or the warp has turned triangles over: a map that turns none over and is linear in
   /// each of them takes the warp's place, if there is one. The last rung of the ladder (§4.3 of the design).
   void unfold();
-  /// The map with its warnings; the end of the solver.
-  DecalMap finish();
+  /// The map with its warnings, among them which features force it to fold; the end of the solver. Error:
+  /// features_mirrored, of a map that folds because all of it would have to be turned over.
+  Result<DecalMap> finish();
 
   /// As it is; without warnings.
   [[nodiscard]] const DecalMap& map() const;

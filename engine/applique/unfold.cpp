@@ -10,9 +10,6 @@ namespace {
 
 /// How many rings of vertices round what is turned over may move; more while it does not do.
 constexpr std::array<int, 4> reaches = {2, 6, 18, std::numeric_limits<int>::max()};
-constexpr std::size_t most_at_fault = 3;
-constexpr std::size_t most_searched = 2000;  // vertices of a part in which features at fault are sought
-constexpr int search_rounds = 12;
 
 bool turned(const std::vector<Vec2>& image, const std::array<int, 3>& f) {
   return orientation(image[f[0]], image[f[1]], image[f[2]]) <= 0;
@@ -72,39 +69,6 @@ Part part_of(const DiscGeometry& disc, double scale, const std::vector<char>& fr
   return part;
 }
 
-Untangled untangle_part(const Part& part, const std::vector<Vec2>& image,
-                        const UntangleOptions& options = {}) {
-  std::vector<Vec2> plane;
-  for (const int v : part.vertices) plane.push_back(image[v]);
-  return untangle(part.tangle, std::move(plane), options);
-}
-
-/// Leaves out, one after another, the feature without which the fewest triangles are turned over, until none
-/// is.
-std::vector<std::uint32_t> features_at_fault(const Part& part, const std::vector<Vec2>& image) {
-  std::vector<std::uint32_t> left(part.tangle.placed.size()), out;
-  for (std::uint32_t k = 0; k < left.size(); ++k) left[k] = k;
-  std::size_t fewest = std::numeric_limits<std::size_t>::max();
-  while (fewest > 0 && !left.empty() && out.size() < most_at_fault) {
-    std::size_t best = left.size();
-    for (std::size_t i = 0; i < left.size() && fewest > 0; ++i) {
-      Part without = part;
-      without.tangle.placed.clear();
-      for (std::size_t k = 0; k < left.size(); ++k)
-        if (k != i) without.tangle.placed.push_back(part.tangle.placed[left[k]]);
-      const std::size_t flips = untangle_part(without, image, {search_rounds}).flips;
-      if (flips >= fewest) continue;
-      fewest = flips;
-      best = i;
-    }
-    if (best == left.size()) return {};
-    out.push_back(left[best]);
-    left.erase(left.begin() + static_cast<std::ptrdiff_t>(best));
-  }
-  std::sort(out.begin(), out.end());
-  return fewest == 0 ? out : std::vector<std::uint32_t>();
-}
-
 }  // namespace
 
 Unfolded unfold_image(const DiscGeometry& disc, double scale, std::vector<Vec2> image,
@@ -112,18 +76,18 @@ Unfolded unfold_image(const DiscGeometry& disc, double scale, std::vector<Vec2> 
   for (const int rings : reaches) {
     const std::vector<char> free = free_vertices(disc, image, features, rings);
     const Part part = part_of(disc, scale, free, features);
-    const Untangled untangled = untangle_part(part, image);
+    std::vector<Vec2> plane;
+    for (const int v : part.vertices) plane.push_back(image[v]);
+    const Untangled untangled = untangle(part.tangle, std::move(plane));
     const bool all = part.vertices.size() == disc.vertices;
     if (untangled.flips == 0 || all || rings == reaches.back()) {
-      Unfolded unfolded{image, untangled.flips, {}};
+      Unfolded unfolded{std::move(image), untangled.flips};
       for (std::size_t i = 0; i < part.vertices.size(); ++i)
         unfolded.image[part.vertices[i]] = untangled.plane[i];
-      if (untangled.flips > 0 && part.vertices.size() <= most_searched)
-        unfolded.at_fault = features_at_fault(part, image);
       return unfolded;
     }
   }
-  return {std::move(image), 0, {}};
+  return {std::move(image), 0};
 }
 
 }  // namespace applique

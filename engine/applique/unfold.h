@@ -13,8 +13,6 @@ namespace applique {
 struct Unfolded {
   std::vector<Vec2> image;  ///< By vertex.
   std::size_t flips = 0;    ///< Triangles that are turned over all the same.
-  std::vector<std::uint32_t>
-      at_fault;  ///< With flips left: the fewest features found without which none would be.
 };
 
 /// The last rung of the ladder (§4.3 of the design): where the embedding or the warp has turned triangles of

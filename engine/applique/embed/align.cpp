@@ -1,5 +1,6 @@
 #include "applique/embed/align.h"
 
+#include <algorithm>
 #include <vector>
 
 namespace applique {
@@ -68,6 +69,12 @@ bool is_mirrored(std::span<const Vec2> from, std::span<const Vec2> to,
   // A correspondence near a similarity is fine, and so is one that neither explains.
   const double direct = residual(from, to);
   return direct > 0.02 * size && residual(reflected, to) < 0.5 * direct;
+}
+
+bool all_turned(std::span<const Vec2> features, std::span<const std::array<std::uint32_t, 3>> triangles) {
+  return triangles.size() > 1 && std::all_of(triangles.begin(), triangles.end(), [&](const auto& t) {
+           return cross(features[t[1]] - features[t[0]], features[t[2]] - features[t[0]]) < 0;
+         });
 }
 
 }  // namespace applique

@@ -35,4 +35,7 @@ Similarity fit_by_edges(std::span<const Vec2> from, std::span<const Vec2> to,
 bool is_mirrored(std::span<const Vec2> from, std::span<const Vec2> to,
                  std::span<const std::array<std::uint32_t, 3>> triangles = {});
 
+/// Whether `features` turn every one of several triangles over, which are counter-clockwise in the image.
+bool all_turned(std::span<const Vec2> features, std::span<const std::array<std::uint32_t, 3>> triangles);
+
 }  // namespace applique
