@@ -246,9 +246,13 @@ BakeTransfer begin_transfer(const SolvedJob& job, const BakeTarget& target, cons
 
 std::vector<std::array<double, 2>> slot_uvs(const Model& model, const ModelPart& part, MaterialSlot slot) {
   if (!part.material || slot == MaterialSlot::base_color) return part.uvs;
-  const auto& material = model.document.json.at("materials").at(*part.material);
-  const UvMapping mapping = read_uv_mapping(material, slot);
-  if (mapping == read_uv_mapping(material)) return part.uvs;
+  return uvs_through(model, part,
+                     read_uv_mapping(model.document.json.at("materials").at(*part.material), slot));
+}
+
+std::vector<std::array<double, 2>> uvs_through(const Model& model, const ModelPart& part,
+                                               const UvMapping& mapping) {
+  if (mapping == read_uv_mapping(model.document.json.at("materials").at(*part.material))) return part.uvs;
   const auto set = part.other_uvs.find(mapping.set);
   if (set == part.other_uvs.end()) return {};
   std::vector<std::array<double, 2>> uvs = set->second;

@@ -33,6 +33,9 @@ struct BakeTarget {
 
 /// A part's texture coordinates for a slot, as ModelPart::uvs are those of the base colour; empty: none.
 std::vector<std::array<double, 2>> slot_uvs(const Model& model, const ModelPart& part, MaterialSlot slot);
+/// The same through any mapping of its material's core textures.
+std::vector<std::array<double, 2>> uvs_through(const Model& model, const ModelPart& part,
+                                               const UvMapping& mapping);
 
 /// Texels of a slot's texture on a material of the model, without decoding it; of the one that a bake would
 /// make for it. Errors: those of load_model_image, of the image's header.

@@ -277,9 +277,9 @@ Result<Job> load_job(const std::filesystem::path& path) {
   job.model = folder / document["model"].get<std::string>();
   job.texture_size = document.value("texture_size", job.texture_size);
   job.gutter = document.value("gutter", job.gutter);
-  const std::string seams = document.value("seams", "sharp");
-  if (seams != "sharp") job.seams = SeamFit::exact;  // Of what cannot be unwrapped in one piece, too.
-  job.unwrap_seams = seams == "unwrap";
+  const std::string seams = document.value("seams", "auto");
+  job.unwrap = seams == "auto" ? Unwrap::unseen : seams == "unwrap" ? Unwrap::always : Unwrap::never;
+  job.seams = seams == "sharp" ? SeamFit::sharp : SeamFit::exact;
   if (document.contains("resolution")) job.resolution = document["resolution"].get<int>();
   for (const json& decal : document["decals"]) job.decals.push_back(decal_of(decal, folder));
   APPLIQUE_CHECK(check_names(job.decals, file));

@@ -96,14 +96,21 @@ const char* name_of(BlendMode mode);
 std::string label_of(const DecalJob& decal, const DecalLayer& layer);
 std::string mask_label_of(const DecalJob& decal);
 
+/// When triangles under a decal that crosses UV seams are laid out anew, in one piece.
+enum class Unwrap {
+  never,
+  unseen,  ///< Where what the model's textures show there stays as it is.
+  always,
+};
+
 /// A job file, version 1.
 struct Job {
   std::filesystem::path path;   ///< The job file itself.
   std::filesystem::path model;  ///< Absolute, or relative to the working folder.
   int texture_size = 2048;      ///< Texels a side of base colours that the job creates.
   std::uint32_t gutter = 16;    ///< As Transfer::gutter.
-  SeamFit seams = SeamFit::sharp;
-  bool unwrap_seams = false;  ///< Triangles under a decal that crosses UV seams are laid out anew.
+  Unwrap unwrap = Unwrap::unseen;
+  SeamFit seams = SeamFit::exact;  ///< Of seams that are left.
   std::optional<int>
       resolution;  ///< Texels a side of other textures that it creates; none: the base colour's.
   std::vector<DecalJob> decals;  ///< At least one; later ones lie over earlier ones.

@@ -158,4 +158,10 @@ std::array<WrapMode, 2> read_wrap_modes(const Document& document, const Json& te
   return {read_wrap(entry, "wrapS"), read_wrap(entry, "wrapT")};
 }
 
+bool magnifies_nearest(const Document& document, const Json& texture) {
+  constexpr std::size_t nearest = 9728;
+  const auto sampler = index_of(texture, "sampler");
+  return sampler && index_of(document.json["samplers"][*sampler], "magFilter") == nearest;
+}
+
 }  // namespace applique

@@ -62,6 +62,9 @@ std::optional<std::size_t> image_of_texture(const Document::Json& texture);
 /// The wrap modes of a texture of a checked document.
 std::array<WrapMode, 2> read_wrap_modes(const Document& document, const Document::Json& texture);
 
+/// Whether the sampler of a texture of a checked document magnifies without interpolation.
+bool magnifies_nearest(const Document& document, const Document::Json& texture);
+
 /// How a material of a checked document shows its base colour.
 ModelMaterial read_material(const Document& document, const Document::Json& material);
 

@@ -41,14 +41,21 @@ struct PartMove {
   bool every_node = false;  ///< So did those of all other nodes that show the mesh.
 };
 
-/// The triangles of a group that are to be separated, each once in its mesh.
+/// The triangles of a group that are to be separated, each once in its mesh: of the decals on it, for the one
+/// that is to be unwrapped, and the largest.
 std::vector<SeparatedTriangle> triangles_to_separate(const SolvedJob& job,
                                                      const std::vector<UvFinding>& findings) {
+  std::vector<const UvFinding*> ordered;
+  for (const UvFinding& finding : findings)
+    if (finding.outcome == UvConflict::separate) ordered.push_back(&finding);
+  std::stable_sort(ordered.begin(), ordered.end(), [](const UvFinding* a, const UvFinding* b) {
+    return std::pair(a->triangles.front().unwrap, a->triangles.size()) >
+           std::pair(b->triangles.front().unwrap, b->triangles.size());
+  });
   std::map<std::pair<std::uint32_t, std::uint32_t>, SeparatedTriangle> chosen;
-  for (const UvFinding& finding : findings) {
-    if (finding.outcome != UvConflict::separate) continue;
-    const DecalJob& decal = job.decals[finding.decal].job;
-    for (const SeparatedTriangle& t : finding.triangles)
+  for (const UvFinding* finding : ordered) {
+    const DecalJob& decal = job.decals[finding->decal].job;
+    for (const SeparatedTriangle& t : finding->triangles)
       chosen.try_emplace({part_that_stands_for(job.model, decal, t.part), t.triangle}, t);
   }
   std::vector<SeparatedTriangle> list;
@@ -71,7 +78,6 @@ class Separation {
     request.triangles = std::move(triangles);
     request.texture = group.texture;
     if (!group.has_texture) request.created_size = job_.job.texture_size;
-    request.unwrap = job_.job.unwrap_seams;
     const std::size_t material = isolate(group, request);
     const std::set<MaterialSlot> written = slots_written(request);
     const std::vector<BakedSlots> slots = find_slots(material, written);
@@ -463,7 +469,7 @@ class Separation {
     const auto [wrap_u, wrap_v] = read_wrap_modes(document_, texture);
     resampling.wrap_u = wrap_u;
     resampling.wrap_v = wrap_v;
-    resampling.nearest = is_nearest(texture);
+    resampling.nearest = magnifies_nearest(document_, texture);
     resampling.content = slot.content;
     resampling.layout = &layout;
     const UvMapping base = group.material
@@ -473,7 +479,7 @@ class Separation {
     if (slot.mapping == base)
       resampling.reference = {static_cast<double>(request.texture[0]) / image.width,
                               static_cast<double>(request.texture[1]) / image.height};
-    resampling.size = is_base ? layout.size : slot_size(resampling, layout);
+    resampling.size = is_base ? layout.size : resampled_size(resampling);
     resampling.bits = working_bits(encoding_, image.bits);
     const Image resampled = resample_texture(resampling);
     // What a decal is baked into is stored as it is to be after that.
@@ -510,29 +516,6 @@ class Separation {
       textures[texture]["sampler"] = samplers.size();
       samplers.push_back(std::move(sampler));
     }
-  }
-
-  [[nodiscard]] bool is_nearest(const Json& texture) const {
-    constexpr std::size_t nearest = 9728;
-    const auto sampler = index_of(texture, "sampler");
-    return sampler && index_of(document_.json["samplers"][*sampler], "magFilter") == nearest;
-  }
-
-  /// The size at which no detail of the slot's texture is lost.
-  static std::array<int, 2> slot_size(const Resampling& resampling, const UvLayout& layout) {
-    constexpr double largest = 8192;
-    std::array<double, 2> density = {1, 1};  // texels by texel of the base colour
-    if (resampling.reference[0] > 0) {
-      for (std::size_t c = 0; c < 2; ++c) density[c] = 1 / (resampling.reference[c] * layout.scale);
-    } else {
-      constexpr double most = 8;
-      density.fill(std::clamp(usual_stretch(layout.corners, resampling.old_corners) / layout.fineness,
-                              1 / most, most));
-    }
-    std::array<int, 2> size = {};
-    for (std::size_t c = 0; c < 2; ++c)
-      size[c] = static_cast<int>(std::clamp(std::round(layout.size[c] * density[c]), 1.0, largest));
-    return size;
   }
 
   /// The reference shows the new coordinates, untransformed.

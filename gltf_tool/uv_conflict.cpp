@@ -11,6 +11,7 @@
 #include "bake_plan.h"
 #include "edit.h"
 #include "instances.h"
+#include "unwrap.h"
 #include "uv_coverage.h"
 #include "uv_raster.h"
 
@@ -172,8 +173,9 @@ SpaceState find_state(const SolvedJob& job, const TextureSpace& space, const UvC
   return state;
 }
 
-/// Whether the decal goes on from one triangle of the space to another whose coordinates do not, and may be
-/// laid out in one piece: over parts of triangles it does not tell where the whole ones would be.
+/// Whether the decal goes on from one triangle of the space to another whose texels are out of step with its
+/// own, and may be laid out in one piece: over parts of triangles it does not tell where the whole ones would
+/// be.
 bool crosses_seams(const SolvedJob& job, const TextureSpace& space, std::size_t decal_index) {
   constexpr double tolerance = 1e-3;  // texels
   const SolvedDecal& decal = job.decals[decal_index];
@@ -194,15 +196,18 @@ bool crosses_seams(const SolvedJob& job, const TextureSpace& space, std::size_t 
       const auto there = across.valid() && f < across ? corners_of(across) : std::nullopt;
       if (!there) continue;
       const auto& vertices = map.patch.faces[across].vertices;
-      for (const std::size_t end : {(k + 1) % 3, (k + 2) % 3}) {
+      std::array<Texel, 2> apart = {};
+      for (std::size_t e = 0; e < 2; ++e) {
+        const std::size_t end = (k + 1 + e) % 3;
         const auto j = static_cast<std::size_t>(
             std::find(vertices.begin(), vertices.end(), face.vertices[end]) - vertices.begin());
-        for (std::size_t c = 0; c < 2; ++c) {
-          double apart = (*here)[end][c] - (*there)[j][c];
-          if (space.wrap[c] == WrapMode::repeat) apart -= std::round(apart);  // The texture goes on there.
-          if (std::abs(apart) * space.texture[c] > tolerance) return true;
-        }
+        for (std::size_t c = 0; c < 2; ++c)
+          apart[e][c] = ((*here)[end][c] - (*there)[j][c]) * space.texture[c];
       }
+      for (std::size_t c = 0; c < 2; ++c)
+        if (std::abs(apart[0][c] - std::round(apart[0][c])) > tolerance ||
+            std::abs(apart[1][c] - apart[0][c]) > tolerance)
+          return true;
     }
   }
   return false;
@@ -365,6 +370,7 @@ Result<std::vector<UvFinding>> find_uv_conflicts(const SolvedJob& job, const Tex
         finding.mixed_instances = finding.mixed_instances || mixed.contains(job.model.parts[t.part].mesh);
       }
     std::optional<UvTrouble> worst;
+    std::optional<bool> unwrapped;
     std::set<std::size_t> in_conflict;
     for (std::size_t s = 0; s < spaces.size(); ++s) {
       std::vector<MaterialSlot> slots;
@@ -373,10 +379,14 @@ Result<std::vector<UvFinding>> find_uv_conflicts(const SolvedJob& job, const Tex
       if (slots.empty() || finding.triangles.empty()) continue;
       const SpaceState state = find_state(job, spaces[s], coverages[s], finding.triangles);
       auto trouble = state.trouble();
-      if (!trouble && job.job.unwrap_seams && decal.uv_conflict == UvConflict::separate &&
+      if (job.job.unwrap != Unwrap::never && decal.uv_conflict == UvConflict::separate &&
           !finding.mixed_instances && crosses_seams(job, spaces[s], d)) {
-        trouble = UvTrouble::seams;
-        for (std::size_t i = 0; i < finding.triangles.size(); ++i) in_conflict.insert(i);
+        if (!unwrapped)
+          unwrapped = job.job.unwrap == Unwrap::always || unwraps_unseen(job, group, finding.triangles);
+        if (*unwrapped && !trouble) {
+          trouble = UvTrouble::seams;
+          for (std::size_t i = 0; i < finding.triangles.size(); ++i) in_conflict.insert(i);
+        }
       }
       if (!trouble) continue;
       worst = std::min(worst.value_or(*trouble), *trouble);
@@ -389,6 +399,7 @@ Result<std::vector<UvFinding>> find_uv_conflicts(const SolvedJob& job, const Tex
     if (!worst) continue;
     std::sort(finding.slots.begin(), finding.slots.end());
     finding.trouble = *worst;
+    for (SeparatedTriangle& t : finding.triangles) t.unwrap = unwrapped.value_or(false);
     finding.in_conflict = in_conflict.size();
     finding.outcome = outcome_of(job, finding);
     findings.push_back(std::move(finding));

@@ -33,7 +33,7 @@ enum class UvTrouble {
   missing,  ///< There are none.
   shared,   ///< Other triangles of the group show the same texels.
   coarse,   ///< The decal's detail would be lost in them.
-  seams,    ///< The decal crosses from one island to another, which the job asks to unwrap.
+  seams,    ///< The decal crosses from one island to another that is out of step, and is unwrapped.
 };
 
 /// A decal that cannot be baked through a group's texture coordinates, or not without being seen elsewhere.

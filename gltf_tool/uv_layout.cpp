@@ -98,12 +98,13 @@ class Charting {
   }
 
   void run() {
-    std::vector<std::uint32_t> rest(request_.triangles.size());
-    std::iota(rest.begin(), rest.end(), 0);
-    if (request_.unwrap) rest = follow_decals(rest);
-    rest = keep_old_layout(rest);
-    if (!request_.unwrap) rest = follow_decals(rest);
-    for (const std::uint32_t i : rest) {
+    std::vector<std::uint32_t> unwrapped;
+    std::vector<std::uint32_t> others;
+    for (std::uint32_t i = 0; i < request_.triangles.size(); ++i)
+      (request_.triangles[i].unwrap ? unwrapped : others).push_back(i);
+    const std::vector<std::uint32_t> left = follow_decals(unwrapped);
+    others.insert(others.end(), left.begin(), left.end());
+    for (const std::uint32_t i : follow_decals(keep_old_layout(others))) {
       corners[i] = own_corners(job_, request_.triangles[i]);
       charts.push_back({{i}, false, {0, 0}, {0, 0, 0, 0}});
     }
@@ -129,7 +130,7 @@ class Charting {
       to.push_back(texels_of(job_, t, request_.texture));
     }
     // Texels that lie askew to the old ones show these as they were when they are finer.
-    const double finer = request_.unwrap ? 2 : 1;
+    const double finer = request_.triangles[chart.triangles.front()].unwrap ? 2 : 1;
     const double density = std::clamp(finer * usual_stretch(from, to), 1.0, most);
     for (const std::uint32_t i : chart.triangles)
       for (Texel& corner : corners[i])

@@ -18,6 +18,7 @@ struct SeparatedTriangle {
   std::uint32_t triangle = 0;      ///< Index in its triangles.
   std::size_t decal = 0;           ///< Index in SolvedJob::decals.
   std::vector<PatchFaceId> faces;  ///< The decal's on it: one, or some parts of a divided surface.
+  bool unwrap = false;             ///< It is laid out as the decal lies on it, whatever it has now.
 };
 
 /// What a layout starts from.
@@ -26,7 +27,6 @@ struct LayoutRequest {
   std::array<int, 2> texture = {0, 0};  ///< Texels of the texture that they show now; 0: none.
   int grid = 1;                         ///< Charts move by multiples of so many texels.
   int created_size = 0;                 ///< Not 0: the atlas is a square of this side, which the charts fill.
-  bool unwrap = false;                  ///< The decals' embeddings come first, then the old layout.
 };
 
 /// A connected piece of an atlas.
@@ -58,7 +58,7 @@ struct UvLayout {
 /// so that what is resampled is the same to the bit: one chart for each connected, unfolded, not overlapping
 /// piece. Those that have no texture coordinates, or such that the decal would be a smear (in some direction
 /// fewer than 1/32 texel for a pixel), are laid out as the decal's embedding is in the plane, at one texel a
-/// pixel or more; so are all where the request is to unwrap them. Where the old texture has less than 1/2
+/// pixel or more; so are those that are to be unwrapped. Where the old texture has less than 1/2
 /// texel along a tenth of the decals' pixels, the base colour becomes finer, as far as the old texture's size
 /// or the job's texture size allow.
 ///

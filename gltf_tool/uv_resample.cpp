@@ -1,10 +1,13 @@
 #include "uv_resample.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <map>
 #include <optional>
+#include <utility>
 
 #include "applique/base/parallel.h"
 #include "applique/image/decal_image.h"
@@ -303,7 +306,123 @@ class Filler {
   std::vector<std::array<Texel, 3>> corners_;  ///< In the new texture's texels.
 };
 
+/// Looks for places where a texture would look otherwise in its new layout.
+class Comparison {
+ public:
+  explicit Comparison(const Resampling& r) : r_(r), sampler_(r) {
+    for (std::size_t c = 0; c < 2; ++c)
+      texels_per_unit_[c] = static_cast<double>(r.size[c]) * r.layout->fineness / r.layout->size[c];
+  }
+
+  [[nodiscard]] bool finds_none() const {
+    std::atomic<bool> same = true;
+    const std::vector<std::array<Texel, 3>>& corners = r_.layout->corners;
+    parallel_for(static_cast<int>(corners.size()), [&](int i) {
+      const auto t = static_cast<std::size_t>(i);
+      if (same && !interpolates(scaled(corners[t]), r_.old_corners[t])) same = false;
+    });
+    return same && edges_agree();
+  }
+
+ private:
+  [[nodiscard]] std::array<Texel, 3> scaled(std::array<Texel, 3> corners) const {
+    for (Texel& corner : corners)
+      for (std::size_t c = 0; c < 2; ++c) corner[c] *= texels_per_unit_[c];
+    return corners;
+  }
+
+  /// Where four texels meet, a sampler shows their mean.
+  [[nodiscard]] bool interpolates(std::array<Texel, 3> corners, const std::array<Texel, 3>& old) const {
+    if (doubled_area(corners) == 0) return true;
+    const TexelMap map = map_between(corners, old);
+    for (Texel& corner : corners)
+      for (double& x : corner) x += 0.5;  // What is visited as a centre is where texels meet.
+    bool same = true;
+    for_each_texel(corners, [&](std::int64_t column, std::int64_t row) {
+      if (!same) return;
+      const auto x = static_cast<double>(column), y = static_cast<double>(row);
+      Value mean = {};
+      for (const auto& [dx, dy] : {std::pair(-0.5, -0.5), {0.5, -0.5}, {-0.5, 0.5}, {0.5, 0.5}}) {
+        const Value value = sampler_(map({x + dx, y + dy}));
+        for (std::size_t c = 0; c < 4; ++c) mean[c] += value[c] / 4;
+      }
+      same = look_alike(mean, sampler_(map({x, y})));
+    });
+    return same;
+  }
+
+  [[nodiscard]] bool edges_agree() const {
+    struct Side {
+      Texel first, last;  ///< In the old texture.
+    };
+    std::map<std::pair<Texel, Texel>, Side> sides;
+    for (const AtlasChart& chart : r_.layout->charts)
+      for (const std::uint32_t t : chart.triangles) {
+        const std::array<Texel, 3> corners = scaled(r_.layout->corners[t]);
+        for (std::size_t k = 0; k < 3; ++k) {
+          const std::size_t next = (k + 1) % 3;
+          const Side side = {r_.old_corners[t][k], r_.old_corners[t][next]};
+          const auto other = sides.find({corners[next], corners[k]});
+          if (other == sides.end()) {
+            sides[{corners[k], corners[next]}] = side;
+            continue;
+          }
+          const Side& across = other->second;
+          if (side.first == across.last && side.last == across.first) continue;
+          const double length =
+              std::hypot(corners[next][0] - corners[k][0], corners[next][1] - corners[k][1]);
+          const int places = 1 + static_cast<int>(2 * length);
+          for (int i = 0; i < places; ++i) {
+            const double s = (i + 0.5) / places;
+            if (!look_alike(sampler_(between(side.first, side.last, s)),
+                            sampler_(between(across.last, across.first, s))))
+              return false;
+          }
+        }
+      }
+    return true;
+  }
+
+  static Texel between(const Texel& a, const Texel& b, double s) {
+    return {a[0] + s * (b[0] - a[0]), a[1] + s * (b[1] - a[1])};
+  }
+
+  [[nodiscard]] bool look_alike(const Value& a, const Value& b) const {
+    constexpr double most = 2.0 / 255;
+    for (std::size_t c = 0; c < 4; ++c) {
+      const bool encoded = c < 3 && r_.content == TexelContent::colour;
+      if (std::abs(encoded ? linear_to_srgb(a[c]) - linear_to_srgb(b[c]) : a[c] - b[c]) > most) return false;
+    }
+    return true;
+  }
+
+  const Resampling& r_;
+  Sampler sampler_;
+  std::array<double, 2> texels_per_unit_ = {1, 1};
+};
+
 }  // namespace
+
+std::array<int, 2> resampled_size(const Resampling& resampling) {
+  constexpr double largest = 8192;
+  const UvLayout& layout = *resampling.layout;
+  std::array<double, 2> density = {1, 1};  // texels by texel of the base colour
+  if (resampling.reference[0] > 0) {
+    for (std::size_t c = 0; c < 2; ++c) density[c] = 1 / (resampling.reference[c] * layout.scale);
+  } else {
+    constexpr double most = 8;
+    density.fill(
+        std::clamp(usual_stretch(layout.corners, resampling.old_corners) / layout.fineness, 1 / most, most));
+  }
+  std::array<int, 2> size = {};
+  for (std::size_t c = 0; c < 2; ++c)
+    size[c] = static_cast<int>(std::clamp(std::round(layout.size[c] * density[c]), 1.0, largest));
+  return size;
+}
+
+bool keeps_look(const Resampling& resampling) {
+  return Comparison(resampling).finds_none();
+}
 
 Image resample_texture(const Resampling& resampling) {
   Image out = make_image(resampling.size[0], resampling.size[1], mean_colour(*resampling.texture));

@@ -46,4 +46,12 @@ struct Resampling {
 /// nearest triangle shows it; between the charts is the mean colour.
 Image resample_texture(const Resampling& resampling);
 
+/// The size at which a layout loses no detail of a texture that it did not start from.
+std::array<int, 2> resampled_size(const Resampling& resampling);
+
+/// Whether the texture would look in its new layout as it does now, to 2/255 where it is magnified: between
+/// the new texels' centres, where what a sampler shows strays most from the old one, and along edges on
+/// either side of which the old layout shows something, but now one thing.
+bool keeps_look(const Resampling& resampling);
+
 }  // namespace applique

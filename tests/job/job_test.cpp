@@ -133,7 +133,8 @@ TEST_F(JobTest, LeavesOutWhatMayBeLeftOut) {
   ASSERT_TRUE(job) << job.error().message;
   const DecalJob& decal = job->decals[0];
   EXPECT_EQ(job->texture_size, 2048);
-  EXPECT_EQ(job->seams, SeamFit::sharp);
+  EXPECT_EQ(job->unwrap, Unwrap::unseen);
+  EXPECT_EQ(job->seams, SeamFit::exact);
   EXPECT_FALSE(decal.mirrored);
   EXPECT_TRUE(std::holds_alternative<AutomaticRegion>(decal.region));
   EXPECT_FALSE(std::get<PositionPlace>(decal.features[0].place).max_distance);
