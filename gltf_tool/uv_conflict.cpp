@@ -105,7 +105,7 @@ Result<std::vector<TextureSpace>> find_spaces(const SolvedJob& job, const Textur
 
 /// All triangles of the group in a space, or in a coarser one if they go round it very often.
 UvCoverage cover(const SolvedJob& job, const TextureGroup& group, const TextureSpace& space) {
-  constexpr double most_texels = 1 << 27;
+  constexpr double most_texels = 1 << 25;  // 4096 x 4096, twice over
   const auto for_each_triangle = [&](const auto& visit) {
     for (const std::uint32_t part : group.parts) {
       if (space.uvs.at(part).empty()) continue;

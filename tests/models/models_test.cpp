@@ -298,6 +298,7 @@ TEST_F(Models, BothSidesOfSeamsShowTheSame) {
       {Unwrap::always, {"bust-mask", "bust-emblem", "bottle-label", "water-bottle"}}};
   for (const ModelJob& job : jobs)
     for (const auto& [unwrap, names] : in_one_piece) {
+      if (unwrap == Unwrap::always && !names.contains(job.name)) continue;
       SCOPED_TRACE(job.name + (unwrap == Unwrap::always ? ", always" : ""));
       SolvedJob solved = solve(job);
       ASSERT_EQ(solved.job.unwrap, Unwrap::unseen);
