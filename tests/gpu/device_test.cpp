@@ -5,8 +5,10 @@
 #include <filesystem>
 #include <fstream>
 #include <numeric>
+#include <string>
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include "applique/gpu/buffer.h"
 #include "applique/gpu/pipeline_cache.h"
@@ -65,7 +67,9 @@ TEST_F(DeviceTest, BuffersKeepWhatIsWritten) {
 class PipelineCacheTest : public testing::Test {
  protected:
   void SetUp() override {
-    folder_ = std::filesystem::path(testing::TempDir()) / "applique_pipeline_cache_test";
+    // Of its own: the tests run side by side.
+    folder_ =
+        std::filesystem::path(testing::TempDir()) / ("applique_pipeline_cache_" + std::to_string(getpid()));
     std::filesystem::remove_all(folder_);
     if (const char* set = std::getenv("XDG_CACHE_HOME")) before_ = set;
     setenv("XDG_CACHE_HOME", folder_.c_str(), 1);
