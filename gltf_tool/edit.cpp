@@ -313,18 +313,21 @@ std::size_t add_image(Document& document, std::span<const std::uint8_t> bytes, c
 }
 
 void show_image(Document& document, std::size_t texture, std::size_t image) {
+  const bool webp = is_webp(document.json["images"][image]);
   auto& entry = document.json["textures"][texture];
   if (entry.contains("extensions"))
     for (const char* extension : source_extensions) entry["extensions"].erase(extension);
-  if (is_webp(document.json["images"][image])) {
+  if (webp) {
     entry.erase("source");
     entry["extensions"]["EXT_texture_webp"]["source"] = image;
-    declare(document, "extensionsUsed", "EXT_texture_webp");
-    declare(document, "extensionsRequired", "EXT_texture_webp");
   } else {
     entry["source"] = image;
   }
   if (entry.contains("extensions") && entry["extensions"].empty()) entry.erase("extensions");
+  // Last: a list that is new moves all of the document's members, and `entry` with them.
+  if (webp)
+    for (const char* list : {"extensionsUsed", "extensionsRequired"})
+      declare(document, list, "EXT_texture_webp");
 }
 
 void set_slot_image(Document& document, std::size_t material, MaterialSlot slot,
