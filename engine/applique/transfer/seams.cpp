@@ -18,9 +18,10 @@ constexpr double spacing = 0.5;            // texels between samples
 constexpr double worn_seam = 8 / 255.0;    // a seam that the texture had before
 constexpr double gutter_stiffness = 0.05;  // of a texel out of sight against one that shows
 constexpr double at_odds = 1 / 255.0;      // two sides that differ by more
-constexpr double insistence = 4;           // on a sample, times what it was
-constexpr int rounds = 6;    // each is a factorisation; what is still at odds then stays within the bounds
-constexpr int releases = 3;  // rounds in which held values may come back: later on they would go to and fro
+constexpr double insistence = 8;           // on a sample, times what it was
+constexpr int most_steps = 40;             // each is a factorisation
+constexpr double last_barrier = 1e-6;      // what a bound's push does over the distance from it
+constexpr double first_room = 0.05;        // that values have to a bound, of what is between the two
 
 int wrapped(std::int64_t texel, int size, WrapMode mode) {
   if (mode == WrapMode::clamp) return static_cast<int>(std::clamp<std::int64_t>(texel, 0, size - 1));
@@ -36,7 +37,7 @@ struct FitTerms {
                ///< to, and insists on the samples that are still at odds there.
 };
 FitTerms terms_of(SeamFit fit) {
-  if (fit == SeamFit::exact) return {1e3, 1, 1, 12};
+  if (fit == SeamFit::exact) return {1e3, 1, 1, 40};
   return {6, 3 / 255.0, 16 / 255.0, 1};
 }
 
@@ -194,7 +195,8 @@ std::vector<Sample> worth_joining(std::vector<Sample> samples, std::span<const S
   return samples;
 }
 
-/// One channel of the texels: least squares within 0 and 1, by an active set of values at these ends.
+/// One channel of the texels: least squares within bounds, by a primal-dual interior point method (Nocedal
+/// and Wright, "Numerical Optimization", 2006, 16.6).
 class Channel {
  public:
   Channel(const std::vector<Sample>& samples, const Unknowns& unknowns, std::span<const SeamTexture> textures,
@@ -218,7 +220,6 @@ class Channel {
       lower_[i] = coding.decode(std::max(0.0, encoded - reach));
       upper_[i] = coding.decode(std::min(1.0, encoded + reach));
     }
-    held_.assign(unknowns.places().size(), false);
     agreement_.assign(samples.size(), terms.agreement);
   }
 
@@ -227,8 +228,7 @@ class Channel {
     double least = std::numeric_limits<double>::infinity();
     for (int pass = 0; pass < terms_.passes && least > at_odds; ++pass) {
       assemble();
-      for (int round = 0; round < rounds && solve(round < releases); ++round) {
-      }
+      solve();
       const double worst = insist();
       if (worst < least) best = value_;
       least = std::min(least, worst);
@@ -313,35 +313,66 @@ class Channel {
     return worst;
   }
 
-  /// Solves for the values that are not held at an end. Whether others are to be held then.
-  bool solve(bool may_release) {
-    Eigen::SparseMatrix<double> free = matrix_;
-    Eigen::VectorXd right = right_;
-    for (Eigen::Index column = 0; column < free.cols(); ++column)
-      for (Eigen::SparseMatrix<double>::InnerIterator entry(free, column); entry; ++entry) {
-        if (held_[column] && !held_[entry.row()]) right[entry.row()] -= entry.value() * value_[column];
-        if (held_[column] || held_[entry.row()]) entry.valueRef() = entry.row() == column ? 1 : 0;
-      }
-    for (Eigen::Index i = 0; i < right.size(); ++i)
-      if (held_[i]) right[i] = value_[i];
-    if (!analysed_) solver_.analyzePattern(free);
-    analysed_ = true;
-    solver_.factorize(free);
-    if (solver_.info() != Eigen::Success) return false;
-    value_ = solver_.solve(right);
-
-    // Where a held value would rather come back, it may.
-    const Eigen::VectorXd pull = right_ - matrix_ * value_;
-    bool others = false;
-    for (Eigen::Index i = 0; i < value_.size(); ++i) {
-      const bool beyond = value_[i] < lower_[i] || value_[i] > upper_[i];
-      const bool stays = held_[i] && (!may_release || (value_[i] <= lower_[i] ? pull[i] < 0 : pull[i] > 0));
-      const bool held = held_[i] ? stays : beyond;
-      others |= held != static_cast<bool>(held_[i]);
-      held_[i] = held;
-      value_[i] = std::clamp(value_[i], lower_[i], upper_[i]);
+  /// The least of the sum within the bounds, from the values as they are: Mehrotra's predictor and corrector.
+  void solve() {
+    using Array = Eigen::ArrayXd;
+    const Array between = upper_ - lower_;
+    Array value = value_.array().max(lower_ + first_room * between).min(upper_ - first_room * between);
+    // What the bounds push with: at first what holds the values where they are.
+    const Array pull = (matrix_ * value.matrix() - right_).array();
+    const double least_push = pull.abs().mean() + last_barrier;
+    Array up = pull.max(0) + least_push;
+    Array down = (-pull).max(0) + least_push;
+    for (int i = 0; i < most_steps; ++i) {
+      const Array below = value - lower_;
+      const Array above = upper_ - value;
+      const double barrier = mean_barrier(below, up, above, down);
+      if (barrier < last_barrier) break;
+      Eigen::SparseMatrix<double> stiff = matrix_;
+      stiff.diagonal() += (up / below + down / above).matrix();
+      if (!analysed_) solver_.analyzePattern(stiff);
+      analysed_ = true;
+      solver_.factorize(stiff);
+      if (solver_.info() != Eigen::Success) break;
+      const Array rest = right_.array() - (matrix_ * value.matrix()).array() + up - down;
+      Array step;
+      Array step_up;
+      Array step_down;
+      // To where each bound's push does what is wanted. How far that can be gone.
+      const auto aim = [&](const Array& wanted_below, const Array& wanted_above) {
+        const Eigen::VectorXd force = (rest + wanted_below / below - wanted_above / above).matrix();
+        step = solver_.solve(force).array();
+        step_up = (wanted_below - up * step) / below;
+        step_down = (wanted_above + down * step) / above;
+        return std::min(
+            {within(below, step), within(above, -step), within(up, step_up), within(down, step_down)});
+      };
+      double length = aim(-up * below, -down * above);
+      const double reached = mean_barrier(below + length * step, up + length * step_up, above - length * step,
+                                          down + length * step_down);
+      const double centre = barrier * std::pow(reached / barrier, 3);
+      const Array bent_below = step * step_up;
+      const Array bent_above = -step * step_down;
+      length = aim(centre - up * below - bent_below, centre - down * above - bent_above);
+      value += length * step;
+      up += length * step_up;
+      down += length * step_down;
     }
-    return others;
+    value_ = value.matrix();
+  }
+
+  static double mean_barrier(const Eigen::ArrayXd& below, const Eigen::ArrayXd& up,
+                             const Eigen::ArrayXd& above, const Eigen::ArrayXd& down) {
+    return ((below * up).mean() + (above * down).mean()) / 2;
+  }
+
+  /// How much of a step, at most all, leaves what is positive so.
+  static double within(const Eigen::ArrayXd& left, const Eigen::ArrayXd& step) {
+    constexpr double nearly = 0.99;
+    double length = 1;
+    for (Eigen::Index i = 0; i < left.size(); ++i)
+      if (step[i] < 0) length = std::min(length, nearly * left[i] / -step[i]);
+    return length;
   }
 
   const std::vector<Sample>& samples_;
@@ -351,8 +382,8 @@ class Channel {
   Coding coding_;
   FitTerms terms_;
   Eigen::SparseMatrix<double> matrix_;
-  Eigen::VectorXd right_, first_, value_, lower_, upper_;
-  std::vector<char> held_;
+  Eigen::VectorXd right_, first_, value_;
+  Eigen::ArrayXd lower_, upper_;
   std::vector<double> agreement_;  ///< By sample.
   Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> solver_;
   bool analysed_ = false;
