@@ -33,7 +33,7 @@ struct BakeTarget {
 
 /// A part's texture coordinates for a slot, as ModelPart::uvs are those of the base colour; empty: none.
 std::vector<std::array<double, 2>> slot_uvs(const Model& model, const ModelPart& part, MaterialSlot slot);
-/// The same through any mapping of its material's core textures.
+/// The same through the mapping of any texture of its material.
 std::vector<std::array<double, 2>> uvs_through(const Model& model, const ModelPart& part,
                                                const UvMapping& mapping);
 

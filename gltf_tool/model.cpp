@@ -14,6 +14,7 @@
 #include "geometry.h"
 #include "material.h"
 #include "posing.h"
+#include "texture_slots.h"
 
 namespace applique {
 namespace {
@@ -244,8 +245,8 @@ class PartReader {
     if (part.material) {
       const auto& material = document_.json["materials"][*part.material];
       mapping = read_uv_mapping(material);
-      for (const MaterialSlot slot : all_slots) {
-        const UvMapping other = read_uv_mapping(material, slot);
+      for (const TextureSlots& slots : find_texture_slots(material)) {
+        const UvMapping& other = slots.mapping;
         if (other == mapping || part.other_uvs.contains(other.set)) continue;
         APPLIQUE_TRY(auto uvs, uv_set(part, entry, other.set));
         if (!uvs.empty()) part.other_uvs[other.set] = std::move(uvs);

@@ -39,7 +39,8 @@ struct ModelPart {
   std::vector<Vec3> normals;               ///< Unit; from the file, or smooth ones where it has none.
   std::vector<std::array<double, 2>> uvs;  ///< Of the base-colour texture, KHR_texture_transform applied, in
                                            ///< texture space [0,1] before wrapping. Empty: no UVs.
-  /// TEXCOORD_n as stored, by n: the sets of the material's other textures that do not use the base colour's.
+  /// TEXCOORD_n as stored, by n: the sets of the material's other textures, those of its extensions too, that
+  /// are not mapped as the base colour is.
   std::map<std::size_t, std::vector<std::array<double, 2>>> other_uvs;
   std::vector<Tangent> tangents;  ///< From the file; empty: none, and MikkTSpace's are meant.
   std::vector<std::array<std::uint32_t, 3>> triangles;  ///< Lists, strips and fans alike, in drawing order;

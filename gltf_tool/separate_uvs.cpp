@@ -87,10 +87,8 @@ class Separation {
     warn_of_scale(group, request, layout);
     const std::size_t set = uv_set(request, images);
     std::vector<OldCorners> corners;
-    for (std::size_t s = 0; s < slots.size(); ++s) {
-      APPLIQUE_TRY(auto old, old_corners(slots[s].mapping, images[s], request));
-      corners.push_back(std::move(old));
-    }
+    for (std::size_t s = 0; s < slots.size(); ++s)
+      corners.push_back(old_corners(slots[s].mapping, images[s], request));
     Tangents tangents;
     const bool anisotropic = is_anisotropic(material);
     if (anisotropic) APPLIQUE_CHECK(keep_tangents(request, layout, material, tangents));
@@ -355,14 +353,13 @@ class Separation {
     const UvMapping mapping = tangent_mapping(material);
     Image square;
     square.width = square.height = 1;
-    APPLIQUE_TRY(const auto old, old_corners(mapping, square, request));
-    if (same_frames(old, layout.corners)) return {};
+    if (same_frames(old_corners(mapping, square, request), layout.corners)) return {};
     std::map<std::uint32_t, std::vector<std::array<Tangent, 3>>> frames;
     for (const SeparatedTriangle& t : request.triangles) {
       const ModelPart& part = job_.model.parts[t.part];
       const auto [of_part, fresh] = frames.try_emplace(t.part);
       if (fresh && part.tangents.empty()) {
-        APPLIQUE_TRY(const auto uvs, read_uvs(part, mapping));
+        const auto uvs = uvs_through(job_.model, part, mapping);
         APPLIQUE_TRY(const auto own, in_own_space(part, *geometry_));
         if (own && !uvs.empty()) of_part->second = tangent_frames(*own, uvs);
         if (!own) warn_of_anisotropy(t, material);
@@ -421,65 +418,27 @@ class Separation {
       for (auto& corner : *corners) std::swap(corner[1], corner[2]);
   }
 
-  Result<std::vector<std::array<Texel, 3>>> old_corners(const UvMapping& mapping, const Image& image,
-                                                        const LayoutRequest& request) {
-    std::map<std::uint32_t, std::vector<std::array<double, 2>>> uvs;
-    std::vector<std::array<Texel, 3>> list;
-    for (const SeparatedTriangle& t : request.triangles) {
-      const ModelPart& part = job_.model.parts[t.part];
-      const auto [of_part, fresh] = uvs.try_emplace(t.part);
-      if (fresh) {
-        APPLIQUE_TRY(of_part->second, read_uvs(part, mapping));
-        // Where there are no coordinates, all are 0.
-        of_part->second.resize(part.positions.size(), mapping.apply({0, 0}));
-      }
-      std::array<Texel, 3> corners = {};
-      for (std::size_t k = 0; k < 3; ++k) {
-        const auto& uv = of_part->second[part.triangles[t.triangle][k]];
-        corners[k] = {uv[0] * image.width, uv[1] * image.height};
-      }
-      list.push_back(corners);
+  [[nodiscard]] OldCorners old_corners(const UvMapping& mapping, const Image& image,
+                                       const LayoutRequest& request) const {
+    OldCorners list;
+    for (const auto& texels : texels_through(job_, request.triangles, mapping, {image.width, image.height})) {
+      // Where there are no coordinates, all are 0.
+      const auto [u, v] = mapping.apply({0, 0});
+      const Texel origin = {u * image.width, v * image.height};
+      list.push_back(texels.value_or(std::array{origin, origin, origin}));
     }
     return list;
-  }
-
-  /// A part's coordinates through a mapping, by vertex; empty: none.
-  Result<std::vector<std::array<double, 2>>> read_uvs(const ModelPart& part, const UvMapping& mapping) {
-    std::vector<std::array<double, 2>> uvs;
-    const auto& entry = geometry_->meshes[part.mesh].primitives[part.primitive];
-    const auto attribute = entry.attributes.find(fmt::format("TEXCOORD_{}", mapping.set));
-    if (attribute == entry.attributes.end()) return uvs;
-    APPLIQUE_TRY(auto values, read_accessor(*geometry_, attribute->second, 2,
-                                            fmt::format("mesh {}, primitive {}, {}", part.mesh,
-                                                        part.primitive, attribute->first)));
-    values.resize(2 * part.positions.size(), 0);
-    for (std::size_t i = 0; i + 1 < values.size(); i += 2)
-      uvs.push_back(mapping.apply({values[i], values[i + 1]}));
-    return uvs;
   }
 
   Result<void> resample(const BakedSlots& slot, const Image& image, const TextureGroup& group,
                         const LayoutRequest& request, const UvLayout& layout, std::size_t material,
                         std::size_t set, OldCorners corners, std::vector<std::array<FrameTurn, 3>> turns) {
-    Resampling resampling;
-    resampling.old_corners = std::move(corners);
-    resampling.turns = std::move(turns);
-    resampling.texture = &image;
-    const auto& texture = document_.json["textures"][slot.texture];
-    const auto [wrap_u, wrap_v] = read_wrap_modes(document_, texture);
-    resampling.wrap_u = wrap_u;
-    resampling.wrap_v = wrap_v;
-    resampling.nearest = magnifies_nearest(document_, texture);
-    resampling.content = slot.content;
-    resampling.layout = &layout;
     const UvMapping base = group.material
                                ? read_uv_mapping(job_.model.document.json["materials"][*group.material])
                                : UvMapping();
-    const bool is_base = slot.name == "baseColorTexture";
-    if (slot.mapping == base)
-      resampling.reference = {static_cast<double>(request.texture[0]) / image.width,
-                              static_cast<double>(request.texture[1]) / image.height};
-    resampling.size = is_base ? layout.size : resampled_size(resampling);
+    Resampling resampling =
+        plan_resampling(document_, slot, image, std::move(corners), layout, request.texture, base);
+    resampling.turns = std::move(turns);
     resampling.bits = working_bits(encoding_, image.bits);
     const Image resampled = resample_texture(resampling);
     // What a decal is baked into is stored as it is to be after that.

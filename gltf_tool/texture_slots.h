@@ -7,9 +7,15 @@
 #include "document.h"
 #include "edit.h"
 #include "material.h"
-#include "uv_resample.h"
 
 namespace applique {
+
+/// What a texture's texels are, which says how they are averaged.
+enum class TexelContent {
+  colour,  ///< sRGB: averaged in linear light.
+  data,    ///< As they are.
+  normal,  ///< Directions in the tangent frame, in red and green: turned with the frame.
+};
 
 /// A texture that a material shows in one slot, or in several through the same texture coordinates.
 struct TextureSlots {

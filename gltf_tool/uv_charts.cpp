@@ -14,23 +14,15 @@ namespace {
 /// A piece is looked at through at most so many texels.
 constexpr double most_texels = 1 << 26;
 
-using Edge = std::pair<std::uint32_t, std::uint32_t>;
-
-Edge edge_of(const ChartTriangle& triangle, std::size_t k) {
-  return std::minmax({triangle.vertices[k], triangle.vertices[(k + 1) % 3]});
-}
-
 class Grower {
  public:
-  explicit Grower(std::span<const ChartTriangle> triangles) : triangles_(triangles) {
-    for (std::uint32_t t = 0; t < triangles.size(); ++t)
-      for (std::size_t k = 0; k < 3; ++k) sides_[edge_of(triangles[t], k)].push_back(t);
-  }
+  Grower(std::span<const std::array<Texel, 3>> corners, std::span<const std::vector<std::uint32_t>> beside)
+      : corners_(corners), beside_(beside) {}
 
   std::vector<std::vector<std::uint32_t>> run() {
-    std::vector<char> seen(triangles_.size(), 0);
-    charted_.assign(triangles_.size(), 0);
-    for (std::uint32_t t = 0; t < triangles_.size(); ++t) {
+    std::vector<char> seen(corners_.size(), 0);
+    charted_.assign(corners_.size(), 0);
+    for (std::uint32_t t = 0; t < corners_.size(); ++t) {
       if (seen[t] != 0) continue;
       const auto piece = spread(t, [&](std::uint32_t u) { return std::exchange(seen[u], 1) == 0; });
       start_raster(piece);
@@ -50,19 +42,18 @@ class Grower {
   std::vector<std::uint32_t> spread(std::uint32_t first, const Take& take) const {
     std::vector<std::uint32_t> reached;
     if (take(first)) reached.push_back(first);
-    const bool turned = doubled_area(triangles_[first].corners) < 0;
+    const bool turned = doubled_area(corners_[first]) < 0;
     for (std::size_t i = 0; i < reached.size(); ++i)
-      for (std::size_t k = 0; k < 3; ++k)
-        for (const std::uint32_t next : sides_.at(edge_of(triangles_[reached[i]], k)))
-          if ((doubled_area(triangles_[next].corners) < 0) == turned && take(next)) reached.push_back(next);
+      for (const std::uint32_t next : beside_[reached[i]])
+        if ((doubled_area(corners_[next]) < 0) == turned && take(next)) reached.push_back(next);
     return reached;
   }
 
   void start_raster(const std::vector<std::uint32_t>& piece) {
-    Texel upper = triangles_[piece[0]].corners[0];
+    Texel upper = corners_[piece[0]][0];
     lower_ = upper;
     for (const std::uint32_t t : piece)
-      for (const Texel& corner : triangles_[t].corners)
+      for (const Texel& corner : corners_[t])
         for (std::size_t c = 0; c < 2; ++c) {
           lower_[c] = std::min(lower_[c], corner[c]);
           upper[c] = std::max(upper[c], corner[c]);
@@ -79,7 +70,7 @@ class Grower {
   /// Puts a triangle into the chart that is growing, if it has none and its texels are free.
   bool claim(std::uint32_t t) {
     if (charted_[t] != 0) return false;
-    std::array<Texel, 3> corners = triangles_[t].corners;
+    std::array<Texel, 3> corners = corners_[t];
     for (Texel& corner : corners)
       for (std::size_t c = 0; c < 2; ++c) corner[c] = scale_ * (corner[c] - lower_[c]);
     const auto owner = [&](std::int64_t x, std::int64_t y) -> std::uint32_t& {
@@ -94,8 +85,8 @@ class Grower {
     return true;
   }
 
-  std::span<const ChartTriangle> triangles_;
-  std::map<Edge, std::vector<std::uint32_t>> sides_;
+  std::span<const std::array<Texel, 3>> corners_;
+  std::span<const std::vector<std::uint32_t>> beside_;
   std::vector<std::vector<std::uint32_t>> charts_;
   std::vector<char> charted_;
   // Of the piece at hand:
@@ -109,7 +100,26 @@ class Grower {
 }  // namespace
 
 std::vector<std::vector<std::uint32_t>> grow_charts(std::span<const ChartTriangle> triangles) {
-  return Grower(triangles).run();
+  std::map<std::pair<std::uint32_t, std::uint32_t>, std::vector<std::uint32_t>> sides;
+  const auto edge_of = [&](std::uint32_t t, std::size_t k) {
+    return std::minmax({triangles[t].vertices[k], triangles[t].vertices[(k + 1) % 3]});
+  };
+  std::vector<std::array<Texel, 3>> corners;
+  for (std::uint32_t t = 0; t < triangles.size(); ++t) {
+    corners.push_back(triangles[t].corners);
+    for (std::size_t k = 0; k < 3; ++k) sides[edge_of(t, k)].push_back(t);
+  }
+  std::vector<std::vector<std::uint32_t>> beside(triangles.size());
+  for (std::uint32_t t = 0; t < triangles.size(); ++t)
+    for (std::size_t k = 0; k < 3; ++k)
+      for (const std::uint32_t other : sides.at(edge_of(t, k)))
+        if (other != t) beside[t].push_back(other);
+  return grow_charts(corners, beside);
+}
+
+std::vector<std::vector<std::uint32_t>> grow_charts(std::span<const std::array<Texel, 3>> corners,
+                                                    std::span<const std::vector<std::uint32_t>> beside) {
+  return Grower(corners, beside).run();
 }
 
 }  // namespace applique

@@ -21,4 +21,8 @@ struct ChartTriangle {
 /// Triangles have an area; each is alone where nothing else will do.
 std::vector<std::vector<std::uint32_t>> grow_charts(std::span<const ChartTriangle> triangles);
 
+/// The same of triangles with these corners, each beside those of its list.
+std::vector<std::vector<std::uint32_t>> grow_charts(std::span<const std::array<Texel, 3>> corners,
+                                                    std::span<const std::vector<std::uint32_t>> beside);
+
 }  // namespace applique

@@ -174,18 +174,18 @@ SpaceState find_state(const SolvedJob& job, const TextureSpace& space, const UvC
 }
 
 /// Whether the decal goes on from one triangle of the space to another whose texels are out of step with its
-/// own, and may be laid out in one piece: over parts of triangles it does not tell where the whole ones would
-/// be.
+/// own.
 bool crosses_seams(const SolvedJob& job, const TextureSpace& space, std::size_t decal_index) {
   constexpr double tolerance = 1e-3;  // texels
   const SolvedDecal& decal = job.decals[decal_index];
   const DecalMap& map = decal.map;
-  if (map.divided != nullptr) return false;
   const auto corners_of = [&](PatchFaceId f) -> std::optional<std::array<Texel, 3>> {
     const FaceId face = map.patch.faces[f].mesh_face;
     if (map.textured[f] == 0 || !face.valid()) return std::nullopt;
     const auto& source = decal.surface->source(face);
-    return space.corners_under(job.model, decal.job, source.part, source.triangle);
+    const auto corners = space.corners_under(job.model, decal.job, source.part, source.triangle);
+    if (!corners) return std::nullopt;
+    return texels_inside(*corners, decal.surface->corners_in_source(face));
   };
   for (const PatchFaceId f : ids<PatchFaceId>(map.patch.faces.size())) {
     const auto here = corners_of(f);

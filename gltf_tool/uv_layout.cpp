@@ -9,7 +9,9 @@
 
 #include <fmt/format.h>
 
+#include "bake_plan.h"
 #include "texel_map.h"
+#include "unroll.h"
 #include "uv_atlas.h"
 #include "uv_charts.h"
 #include "uv_raster.h"
@@ -28,19 +30,6 @@ std::array<Vec3, 3> surface_corners(const SolvedJob& job, const SeparatedTriangl
   const ModelPart& part = job.model.parts[t.part];
   const auto& corners = part.triangles[t.triangle];
   return {part.positions[corners[0]], part.positions[corners[1]], part.positions[corners[2]]};
-}
-
-double area_of(const std::array<Vec3, 3>& p) {
-  return 0.5 * (p[1] - p[0]).cross(p[2] - p[0]).norm();
-}
-
-/// A triangle of space flat in the plane, its first corner at the origin.
-std::array<Texel, 3> flatten(const std::array<Vec3, 3>& p) {
-  const Vec3 side = p[1] - p[0];
-  const Vec3 other = p[2] - p[0];
-  const double length = side.norm();
-  if (length == 0) return {};
-  return {Texel{0, 0}, Texel{length, 0}, Texel{other.dot(side) / length, side.cross(other).norm() / length}};
 }
 
 /// Length to width of what a circle becomes under the affine map between the triangles; infinite where one
@@ -72,19 +61,6 @@ std::array<Texel, 3> pixel_corners(const SolvedDecal& decal, const IdVector<Patc
   return corners;
 }
 
-/// Laid out alone: as it is on the surface, with about as many texels as the decal has pixels there. One
-/// without an area gets half a texel, so that it is a triangle.
-std::array<Texel, 3> own_corners(const SolvedJob& job, const SeparatedTriangle& t) {
-  const auto surface = surface_corners(job, t);
-  const double area = area_of(surface);
-  const double scale = std::sqrt(std::max(pixels_on(job, t), 1.0) / area);
-  std::array<Texel, 3> corners = flatten(surface);
-  for (Texel& corner : corners)
-    for (double& x : corner) x *= scale;
-  if (area > 0 && slimness({Texel{0, 0}, Texel{1, 0}, Texel{0, 1}}, corners) < 1e6) return corners;
-  return {Texel{0, 0}, Texel{1, 0}, Texel{0, 1}};
-}
-
 /// Texels a side that an atlas in place of a texture may have for the decal's sake.
 int largest_wanted(const SolvedJob& job, const LayoutRequest& request) {
   return std::min(std::max({job.job.texture_size, request.texture[0], request.texture[1]}), largest_side);
@@ -102,12 +78,8 @@ class Charting {
     std::vector<std::uint32_t> others;
     for (std::uint32_t i = 0; i < request_.triangles.size(); ++i)
       (request_.triangles[i].unwrap ? unwrapped : others).push_back(i);
-    const std::vector<std::uint32_t> left = follow_decals(unwrapped);
-    others.insert(others.end(), left.begin(), left.end());
-    for (const std::uint32_t i : follow_decals(keep_old_layout(others))) {
-      corners[i] = own_corners(job_, request_.triangles[i]);
-      charts.push_back({{i}, false, {0, 0}, {0, 0, 0, 0}});
-    }
+    roll_out(follow_decals(unwrapped));
+    roll_out(follow_decals(keep_old_layout(others)));
     if (request_.created_size != 0) return;
     for (const AtlasChart& chart : charts)
       if (!chart.kept) refine(chart);
@@ -194,8 +166,7 @@ class Charting {
       const SeparatedTriangle& t = request_.triangles[i];
       const SolvedDecal& decal = job_.decals[t.decal];
       ChartTriangle triangle{pixel_corners(decal, decal.map.plane, patch_face(job_, t)), {}};
-      if (!is_whole(job_, t) ||
-          !(slimness(flatten(surface_corners(job_, t)), triangle.corners) <= slimmest)) {
+      if (!is_whole(job_, t) || !(slimness(flatten(job_, t), triangle.corners) <= slimmest)) {
         rest.push_back(i);
         continue;
       }
@@ -211,10 +182,23 @@ class Charting {
     return rest;
   }
 
+  void roll_out(const std::vector<std::uint32_t>& members) {
+    std::vector<SeparatedTriangle> triangles;
+    for (const std::uint32_t i : members) triangles.push_back(request_.triangles[i]);
+    const Unrolled unrolled = unroll(job_, triangles);
+    for (std::size_t j = 0; j < members.size(); ++j) corners[members[j]] = unrolled.corners[j];
+    add_charts(members, grow_charts(unrolled.corners, unrolled.beside), false);
+  }
+
   void add_charts(const std::vector<std::uint32_t>& members, const std::vector<ChartTriangle>& list,
                   bool kept) {
     for (std::size_t j = 0; j < members.size(); ++j) corners[members[j]] = list[j].corners;
-    for (auto& grown : grow_charts(list)) {
+    add_charts(members, grow_charts(list), kept);
+  }
+
+  void add_charts(const std::vector<std::uint32_t>& members,
+                  std::vector<std::vector<std::uint32_t>> grown_charts, bool kept) {
+    for (auto& grown : grown_charts) {
       for (std::uint32_t& t : grown) t = members[t];
       charts.push_back({std::move(grown), kept, {0, 0}, {0, 0, 0, 0}});
     }
@@ -390,6 +374,27 @@ std::array<Texel, 3> texels_of(const SolvedJob& job, const SeparatedTriangle& t,
     texels[k] = {uv[0] * texture[0], uv[1] * texture[1]};
   }
   return texels;
+}
+
+std::vector<std::optional<std::array<Texel, 3>>> texels_through(const SolvedJob& job,
+                                                                std::span<const SeparatedTriangle> triangles,
+                                                                const UvMapping& mapping,
+                                                                const std::array<int, 2>& texture) {
+  std::map<std::uint32_t, std::vector<std::array<double, 2>>> uvs;
+  std::vector<std::optional<std::array<Texel, 3>>> list;
+  for (const SeparatedTriangle& t : triangles) {
+    const ModelPart& part = job.model.parts[t.part];
+    const auto [of_part, fresh] = uvs.try_emplace(t.part);
+    if (fresh) of_part->second = uvs_through(job.model, part, mapping);
+    auto& texels = list.emplace_back();
+    if (of_part->second.empty()) continue;
+    texels.emplace();
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto& uv = of_part->second[part.triangles[t.triangle][k]];
+      (*texels)[k] = {uv[0] * texture[0], uv[1] * texture[1]};
+    }
+  }
+  return list;
 }
 
 bool has_texture_space(const SolvedJob& job, const SeparatedTriangle& t, const std::array<int, 2>& texture) {

@@ -3,11 +3,14 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
+#include <span>
 #include <vector>
 
 #include "applique/base/error.h"
 #include "applique/transfer/transfer.h"
 
+#include "material.h"
 #include "solve_job.h"
 
 namespace applique {
@@ -79,5 +82,12 @@ double pixels_on(const SolvedJob& job, const SeparatedTriangle& triangle);
 /// Its texture coordinates, in texels of a texture of this size.
 std::array<Texel, 3> texels_of(const SolvedJob& job, const SeparatedTriangle& triangle,
                                const std::array<int, 2>& texture);
+
+/// The same through the mapping of any texture of the triangles' materials, in such a texture; none where a
+/// part has no such coordinates.
+std::vector<std::optional<std::array<Texel, 3>>> texels_through(const SolvedJob& job,
+                                                                std::span<const SeparatedTriangle> triangles,
+                                                                const UvMapping& mapping,
+                                                                const std::array<int, 2>& texture);
 
 }  // namespace applique

@@ -403,8 +403,7 @@ class Comparison {
   std::array<double, 2> texels_per_unit_ = {1, 1};
 };
 
-}  // namespace
-
+/// The size at which a layout loses no detail of a texture that it did not start from.
 std::array<int, 2> resampled_size(const Resampling& resampling) {
   constexpr double largest = 8192;
   const UvLayout& layout = *resampling.layout;
@@ -422,8 +421,31 @@ std::array<int, 2> resampled_size(const Resampling& resampling) {
   return size;
 }
 
+}  // namespace
+
 bool keeps_look(const Resampling& resampling) {
   return Comparison(resampling).finds_none();
+}
+
+Resampling plan_resampling(const Document& document, const TextureSlots& slots, const Image& image,
+                           std::vector<std::array<Texel, 3>> old_corners, const UvLayout& layout,
+                           const std::array<int, 2>& started_from, const UvMapping& base) {
+  Resampling resampling;
+  resampling.texture = &image;
+  resampling.old_corners = std::move(old_corners);
+  resampling.layout = &layout;
+  const auto& texture = document.json["textures"][slots.texture];
+  const auto [wrap_u, wrap_v] = read_wrap_modes(document, texture);
+  resampling.wrap_u = wrap_u;
+  resampling.wrap_v = wrap_v;
+  resampling.nearest = magnifies_nearest(document, texture);
+  resampling.content = slots.content;
+  resampling.bits = image.bits;
+  if (slots.mapping == base)
+    resampling.reference = {static_cast<double>(started_from[0]) / image.width,
+                            static_cast<double>(started_from[1]) / image.height};
+  resampling.size = slots.name == "baseColorTexture" ? layout.size : resampled_size(resampling);
+  return resampling;
 }
 
 Image resample_texture(const Resampling& resampling) {

@@ -6,16 +6,10 @@
 #include "applique/image/image.h"
 #include "applique/transfer/transfer.h"
 
+#include "texture_slots.h"
 #include "uv_layout.h"
 
 namespace applique {
-
-/// What a texture's texels are, which says how they are averaged.
-enum class TexelContent {
-  colour,  ///< sRGB: averaged in linear light.
-  data,    ///< As they are.
-  normal,  ///< Directions in the tangent frame, in red and green: turned with the frame.
-};
 
 /// From the old tangent frame to the new one: x' = xx x + xy y, y' = yx x + yy y. Without length or shear.
 struct FrameTurn {
@@ -40,14 +34,18 @@ struct Resampling {
   std::vector<std::array<FrameTurn, 3>> turns;    ///< By triangle and corner; empty: none is turned.
 };
 
+/// How the texture that a material shows in some slots goes into a layout: `layout` of a request for a
+/// texture of `started_from` texels that is shown through `base`; both stay as long as what is returned, as
+/// does the image. No directions are turned yet.
+Resampling plan_resampling(const Document& document, const TextureSlots& slots, const Image& image,
+                           std::vector<std::array<Texel, 3>> old_corners, const UvLayout& layout,
+                           const std::array<int, 2>& started_from, const UvMapping& base);
+
 /// The texture in its new layout, with the old one's channels. Each texel gets what the sampler
 /// shows of the old texture at its centre (bilinear, wrapped), or the mean over its square where the old one
 /// is finer; texels that are hit exactly are copied. The gutter continues the old texture as the
 /// nearest triangle shows it; between the charts is the mean colour.
 Image resample_texture(const Resampling& resampling);
-
-/// The size at which a layout loses no detail of a texture that it did not start from.
-std::array<int, 2> resampled_size(const Resampling& resampling);
 
 /// Whether the texture would look in its new layout as it does now, to 2/255 where it is magnified: between
 /// the new texels' centres, where what a sampler shows strays most from the old one, and along edges on
