@@ -77,6 +77,22 @@ TEST(GeodesicBetween, IsAHelixOnACylinder) {
   }
 }
 
+/// Where the strip is taken over several vertices at once, what it turns over at one is not there at the
+/// next.
+TEST(GeodesicBetween, IsOnTheSurfaceAmongSpikes) {
+  std::mt19937 random(4);
+  std::uniform_real_distribution<double> height(0, 0.4);
+  shapes::Soup soup = shapes::plane(24, 24, 3, 3, 0.2);
+  for (Vec3& p : soup.positions) p.z() = height(random);
+  const SurfaceMesh mesh = soup.weld();
+  for (int trial = 0; trial < 200; ++trial) {
+    const SurfacePoint a = random_point(mesh, random), b = random_point(mesh, random);
+    const SurfaceLine line = geodesic_between(mesh, a, b);
+    expect_on_surface(mesh, line);
+    EXPECT_GE(line.length(), (position_of(mesh, a) - position_of(mesh, b)).norm() - 1e-12);
+  }
+}
+
 TEST(GeodesicBetween, NearsTheGreatCircle) {
   const SurfaceMesh mesh = shapes::sphere(4, 1).weld();
   std::mt19937 random(3);

@@ -164,6 +164,7 @@ class Sleeve {
     std::size_t free = faces_.size();  // The faces before this one are as they were.
     for (std::size_t i = turns_.size(); i-- > 0;) {
       const FunnelTurn& turn = turns_[i];
+      if (turn.portal + 1 >= free) continue;
       const VertexId v = turn.left ? sides_[turn.portal].left : sides_[turn.portal].right;
       std::size_t first = turn.portal, last = turn.portal + 1;
       while (first > 0 && has_corner(mesh_, faces_[first - 1], v)) --first;
