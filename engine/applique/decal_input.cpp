@@ -42,13 +42,27 @@ std::vector<Vec2> targets_of(const DecalInput& input) {
   return targets;
 }
 
-tl::unexpected<Error> fail_mirrored(const DecalInput& input) {
-  return fail(ErrorCode::features_mirrored,
-              fmt::format("decal '{}': the features 0 to {} run one way round in the image and the other way "
-                          "round on the surface, so that the image would have to be mirrored; swap the "
-                          "places of left and right, or {} \"mirrored\": true",
-                          input.name, input.features.size() - 1,
-                          input.region.frame().mirrored ? "leave out" : "give the decal"));
+std::string weld_note(const SurfaceMesh& surface) {
+  std::string note;
+  if (surface.cut_edges > 0)
+    note += fmt::format(
+        "; edges that more than two triangles share, or two that face opposite sides, are cut "
+        "open: {} of them",
+        surface.cut_edges);
+  if (surface.dropped_triangles > 0)
+    note += fmt::format("; triangles whose corners are too near to tell apart are left out: {} of them",
+                        surface.dropped_triangles);
+  return note;
+}
+
+tl::unexpected<Error> fail_mirrored(const SurfaceMesh& surface, const DecalInput& input) {
+  return fail(
+      ErrorCode::features_mirrored,
+      fmt::format("decal '{}': the features 0 to {} run one way round in the image and the other way "
+                  "round on the surface, so that the image would have to be mirrored; swap the "
+                  "places of left and right, or {} \"mirrored\": true{}",
+                  input.name, input.features.size() - 1,
+                  input.region.frame().mirrored ? "leave out" : "give the decal", weld_note(surface)));
 }
 
 Result<void> check_input(const SurfaceMesh& surface, const DecalInput& input,
@@ -113,8 +127,8 @@ Result<void> check_input(const SurfaceMesh& surface, const DecalInput& input,
         ErrorCode::features_disconnected,
         fmt::format(
             "{}the features lie on {} parts of the model that are not connected: {}; place them on one "
-            "connected part, or make a decal for each",
-            prefix, parts.size(), text));
+            "connected part, or make a decal for each{}",
+            prefix, parts.size(), text, weld_note(surface)));
   }
   return {};
 }

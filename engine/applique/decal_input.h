@@ -16,9 +16,13 @@ bool checks_patch(const SolveOptions& options);
 /// The features' image points in the plane.
 std::vector<Vec2> targets_of(const DecalInput& input);
 
+/// What to add to an error that tells of a surface that is not as its maker may think: where the weld cut it
+/// open or left triangles out (begins with "; "). Empty where it did not.
+std::string weld_note(const SurfaceMesh& surface);
+
 /// The features_mirrored of a decal whose features run one way round in the image and the other way round on
 /// the surface.
-tl::unexpected<Error> fail_mirrored(const DecalInput& input);
+tl::unexpected<Error> fail_mirrored(const SurfaceMesh& surface, const DecalInput& input);
 
 /// What every method asks of its input. `targets`: the features' image points in the plane. Features may
 /// share a spot of the surface, not of the image, where the decal may lie over itself. Errors, each naming

@@ -109,7 +109,7 @@ class DecalSolver::Work {
   Result<DecalMap> finish() {
     if (folds(map_) > 0) {
       const std::vector<Vec2> features = feature_places(seed_->disc, *growth_, map_.plane.raw());
-      if (all_turned(features, map_.graph.triangles)) return fail_mirrored(input_);
+      if (all_turned(features, map_.graph.triangles)) return fail_mirrored(surface_, input_);
       at_fault_ = features_at_fault(surface_, input_.region, map_, features, targets_, groups_);
     }
     warn();
@@ -142,8 +142,8 @@ class DecalSolver::Work {
                       input_.name, feature_name(input_, i), feature_name(input_, j)));
     }
     return fail(ErrorCode::features_disconnected,
-                fmt::format("decal '{}': no way along the surface from {} to {}", input_.name,
-                            feature_name(input_, i), feature_name(input_, j)));
+                fmt::format("decal '{}': no way along the surface from {} to {}{}", input_.name,
+                            feature_name(input_, i), feature_name(input_, j), weld_note(surface_)));
   }
 
   /// Embeds, aligns and warps the disc as it is: points_ and warp_.
@@ -375,7 +375,7 @@ class DecalSolver::Work {
       const double settled = to_the_last ? 0 : few_changes * static_cast<double>(disc.faces().size());
       if (static_cast<double>(added + peeled) <= settled) {
         // Thin patches mislead: what they say of the features' order counts once the patch is grown.
-        if (mirrored_) return fail_mirrored(input_);
+        if (mirrored_) return fail_mirrored(surface_, input_);
         if (energy != attempt_.energy) {
           energy = attempt_.energy;
         } else if (padded) {

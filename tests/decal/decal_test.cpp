@@ -506,5 +506,17 @@ TEST(DecalErrors, NameTheFeaturesOnDisconnectedParts) {
       ErrorCode::features_disconnected, "feature 0 at (100.0, 256.0) from feature 1 at (300.0, 256.0)");
 }
 
+/// Two squares beside each other and a fin on the edge between them.
+TEST(DecalErrors, TellOfEdgesThatWereCutOpen) {
+  const SurfaceMesh surface =
+      shapes::Soup{{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {2, 0, 0}, {2, 1, 0}, {1, 0.5, 1}},
+                   {{0, 1, 2}, {0, 2, 3}, {1, 4, 5}, {1, 5, 2}, {1, 2, 6}}}
+          .weld();
+  ASSERT_EQ(surface.cut_edges, 1u);
+  expect_error(surface,
+               decal(surface, rectangle(), {{{100, 256}, {0.5, 0.5, 0}}, {{300, 256}, {1.5, 0.5, 0}}}),
+               ErrorCode::features_disconnected, "are cut open: 1 of them");
+}
+
 }  // namespace
 }  // namespace applique

@@ -194,7 +194,7 @@ class PaperSolver {
     if (!std::all_of(plane.begin(), plane.end(), [](Vec2 z) { return std::isfinite(std::norm(z)); }))
       return fail(ErrorCode::not_solved,
                   fmt::format("decal '{}': the conformal embedding has no solution", input_.name));
-    if (is_mirrored(features_in(seed, plane), targets_)) return fail_mirrored(input_);
+    if (is_mirrored(features_in(seed, plane), targets_)) return fail_mirrored(surface_, input_);
     return plane;
   }
 

@@ -20,7 +20,7 @@ Result<RivalMap> map_exponential(const SurfaceMesh& surface, const RivalTask& ta
   std::vector<Vec2> places;
   for (const Feature& feature : features)
     places.push_back(front.image_of(feature.surface, [](Vec2 at) { return at; }));
-  APPLIQUE_TRY(const Similarity placed, place_in_image(task, places));
+  APPLIQUE_TRY(const Similarity placed, place_in_image(surface, task, places));
   RivalMap map = front.cover(RegionBox(task.input.region), placed);
   for (const Vec2 z : places) map.features.push_back(placed(z));
   return map;

@@ -23,7 +23,7 @@ Result<RivalMap> project_planar(const SurfaceMesh& surface, const RivalTask& tas
   RivalMap map;
   for (const Feature& feature : task.input.features)
     map.features.push_back(task.frame.coordinates(position_of(surface, feature.surface)));
-  APPLIQUE_TRY(const Similarity placed, place_in_image(task, map.features));
+  APPLIQUE_TRY(const Similarity placed, place_in_image(surface, task, map.features));
   for (Vec2& z : map.features) z = placed(z);
 
   const RegionBox box(task.input.region);

@@ -38,13 +38,14 @@ Result<RivalTask> make_task(const SurfaceMesh& surface, const DecalInput& input)
   return task;
 }
 
-Result<Similarity> place_in_image(const RivalTask& task, const std::vector<Vec2>& features) {
+Result<Similarity> place_in_image(const SurfaceMesh& surface, const RivalTask& task,
+                                  const std::vector<Vec2>& features) {
   const Vec2 anchor = features[task.anchor], target = task.targets[task.anchor];
   if (features.size() == 1) {
     const double scale = lone_scale(task.input);
     return Similarity{scale, target - scale * anchor};
   }
-  if (is_mirrored(features, task.targets)) return fail_mirrored(task.input);
+  if (is_mirrored(features, task.targets)) return fail_mirrored(surface, task.input);
   const Similarity fit = fit_similarity_about(task.anchor, features, task.targets);
   if (!(std::abs(fit.scale) > 0) || !std::isfinite(std::abs(fit.scale)))
     return fail(ErrorCode::not_solved,

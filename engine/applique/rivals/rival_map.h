@@ -33,7 +33,8 @@ Result<RivalTask> make_task(const SurfaceMesh& surface, const DecalInput& input)
 /// The similarity that brings a map's own coordinates, scene units, to the image: exact at the anchor; of the
 /// wanted size with a lone feature, else nearest to the other features in the sum of squares. `features`: in
 /// the map's coordinates. Errors: features_mirrored; not_solved where the map has all features in one place.
-Result<Similarity> place_in_image(const RivalTask& task, const std::vector<Vec2>& features);
+Result<Similarity> place_in_image(const SurfaceMesh& surface, const RivalTask& task,
+                                  const std::vector<Vec2>& features);
 
 /// The region's bounding box, which says how far a map must go: unlike the region it is convex, so that ways
 /// from the anchor to its parts stay in it.
