@@ -108,7 +108,7 @@ std::vector<SlotSeams> seams_by_slot(const SolvedJob& job, std::vector<TargetWor
     SlotSeams of_slot;
     std::vector<SizedTarget> targets;
     for (TargetWork& work : works) {
-      if (work.target.slot != slot || encoding_of(slot) == Encoding::normal) continue;
+      if (work.target.slot != slot) continue;
       of_slot.works.push_back(&work);
       targets.push_back({&work.target, work.texture.width, work.texture.height});
     }

@@ -152,12 +152,7 @@ void turn_into_tangent_space(const ModelPart& part, std::size_t index, const Fac
   const Vec3 right = side * (y2 * p1 - y1 * p2), up = side * (x1 * p2 - x2 * p1);
   double turn = 0;
   for (std::size_t k = 0; k < 3; ++k) {
-    const Vec3 normal =
-        blend(corners[k], [&](std::size_t i) { return shading_normal(part, index, i); }).normalized();
-    const Vec3 direction = blend(corners[k], [&](std::size_t i) { return frames[i].direction; });
-    const Vec3 tangent = (direction - normal.dot(direction) * normal).normalized();
-    const double sign = blend(corners[k], [&](std::size_t i) { return frames[i].sign; });
-    const Vec3 bitangent = std::copysign(1, sign) * normal.cross(tangent);
+    const auto [tangent, bitangent, normal] = frame_inside(part, index, frames, corners[k]);
     const Vec2 along(right.dot(tangent), right.dot(bitangent)), across(up.dot(tangent), up.dot(bitangent));
     face.along[k] = std::abs(along) > 0 ? along / std::abs(along) : Vec2(1);
     turn += cross(along, across);

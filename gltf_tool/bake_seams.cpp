@@ -7,7 +7,9 @@
 #include <set>
 #include <utility>
 
+#include "decal_layers.h"
 #include "instances.h"
+#include "tangents.h"
 
 namespace applique {
 namespace {
@@ -22,6 +24,26 @@ std::map<FaceId, std::uint32_t> top_sheets(const DecalMap& map) {
     sheet = std::max(sheet, map.sheet[f]);
   }
   return top;
+}
+
+/// A normal map's +x and +y at the ends of a side of a triangle, in the tangent plane there: x along the
+/// side.
+std::array<std::array<Vec2, 2>, 2> axes_at(const ModelPart& part, std::size_t triangle,
+                                           const std::array<Tangent, 3>& frames,
+                                           const std::array<std::array<double, 3>, 2>& ends) {
+  const auto place = [&](std::size_t end) {
+    return blend(ends[end], [&](std::size_t k) { return part.positions[part.triangles[triangle][k]]; });
+  };
+  const Vec3 side = place(1) - place(0);
+  std::array<std::array<Vec2, 2>, 2> axes = {};
+  for (std::size_t end = 0; end < 2; ++end) {
+    const auto [tangent, bitangent, normal] = frame_inside(part, triangle, frames, ends[end]);
+    const Vec3 along = (side - normal.dot(side) * normal).normalized();
+    const Vec3 across = normal.cross(along);
+    axes[end] = {Vec2(tangent.dot(along), tangent.dot(across)),
+                 Vec2(bitangent.dot(along), bitangent.dot(across))};
+  }
+  return axes;
 }
 
 /// A decal's faces as the targets of one slot show them.
@@ -53,20 +75,29 @@ class ShownFaces {
     std::array<Texel, 3> texels = {};
     for (std::size_t k = 0; k < 3; ++k)
       texels[k] = {uvs[triangle[k]][0] * target.width, uvs[triangle[k]][1] * target.height};
-    texels = texels_inside(texels, decal_.surface->corners_in_source(face.mesh_face));
+    const FaceCorners& inside = decal_.surface->corners_in_source(face.mesh_face);
+    texels = texels_inside(texels, inside);
     Seam::Side side{found->second, {}, {}};
+    std::array<std::array<double, 3>, 2> weights = {};
     for (std::size_t corner = 0; corner < 3; ++corner) {
-      const auto end = std::find(ends.begin(), ends.end(), face.vertices[corner]);
-      (end == ends.end() ? side.apex : side.ends[static_cast<std::size_t>(end - ends.begin())]) =
-          texels[corner];
+      const auto end =
+          static_cast<std::size_t>(std::find(ends.begin(), ends.end(), face.vertices[corner]) - ends.begin());
+      (end == ends.size() ? side.apex : side.ends[end]) = texels[corner];
+      if (end < ends.size()) weights[end] = inside[corner];
     }
+    if (const auto frames = frames_.find(source.part); frames != frames_.end())
+      side.axes =
+          axes_at(job_.model.parts[source.part], source.triangle, frames->second[source.triangle], weights);
     return side;
   }
 
  private:
   void add_part(std::uint32_t part, std::uint32_t target) {
-    if (target_of_.try_emplace(part, target).second)
-      uvs_[part] = slot_uvs(job_.model, job_.model.parts[part], targets_[target].target->slot);
+    if (!target_of_.try_emplace(part, target).second) return;
+    const MaterialSlot slot = targets_[target].target->slot;
+    uvs_[part] = slot_uvs(job_.model, job_.model.parts[part], slot);
+    if (encoding_of(slot) == Encoding::normal)
+      frames_[part] = tangent_frames(job_.model.parts[part], uvs_[part]);
   }
 
   const SolvedJob& job_;
@@ -75,6 +106,7 @@ class ShownFaces {
   std::map<FaceId, std::uint32_t> top_;
   std::map<std::uint32_t, std::uint32_t> target_of_;  // By part.
   std::map<std::uint32_t, std::vector<std::array<double, 2>>> uvs_;
+  std::map<std::uint32_t, std::vector<std::array<Tangent, 3>>> frames_;  // Of normal maps.
 };
 
 bool coincide(const Seam::Side& a, const Seam::Side& b) {

@@ -77,6 +77,18 @@ std::vector<std::array<Tangent, 3>> tangent_frames(const ModelPart& part,
   return frames;
 }
 
+NormalMapFrame frame_inside(const ModelPart& part, std::size_t triangle, const std::array<Tangent, 3>& frames,
+                            const std::array<double, 3>& weights) {
+  NormalMapFrame frame;
+  frame.normal =
+      blend(weights, [&](std::size_t i) { return shading_normal(part, triangle, i); }).normalized();
+  const Vec3 direction = blend(weights, [&](std::size_t i) { return frames[i].direction; });
+  frame.tangent = (direction - frame.normal.dot(direction) * frame.normal).normalized();
+  const double sign = blend(weights, [&](std::size_t i) { return frames[i].sign; });
+  frame.bitangent = std::copysign(1, sign) * frame.normal.cross(frame.tangent);
+  return frame;
+}
+
 std::optional<std::vector<std::array<float, 4>>> vertex_tangents(
     const ModelPart& part, const std::vector<std::array<Tangent, 3>>& frames) {
   std::vector<std::array<float, 4>> tangents(part.positions.size(), {1, 0, 0, 0});

@@ -19,6 +19,15 @@ namespace applique {
 std::vector<std::array<Tangent, 3>> tangent_frames(const ModelPart& part,
                                                    std::span<const std::array<double, 2>> uvs);
 
+/// Where a normal map's vectors point at a place in a triangle: +x along the tangent, +y along the bitangent,
+/// +z along the normal; unit.
+struct NormalMapFrame {
+  Vec3 tangent, bitangent, normal;
+};
+/// `frames`: the triangle's of tangent_frames(); `weights`: of its corners.
+NormalMapFrame frame_inside(const ModelPart& part, std::size_t triangle, const std::array<Tangent, 3>& frames,
+                            const std::array<double, 3>& weights);
+
 /// The frames by vertex, as glTF stores them: a unit tangent and its sign. None where the triangles about a
 /// vertex differ in the sign.
 std::optional<std::vector<std::array<float, 4>>> vertex_tangents(

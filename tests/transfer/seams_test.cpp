@@ -65,8 +65,8 @@ TEST(Seams, ExactOnesAgreeOnNoise) {
   }
 }
 
-/// Seams that cross and crowd, between texels that are black or white, none of which can go beyond, round holes
-/// of the decal, where texels stay.
+/// Seams that cross and crowd, between texels that are black or white, none of which can go beyond, round
+/// holes of the decal, where texels stay.
 TEST(Seams, ExactOnesAgreeBetweenBlackAndWhite) {
   constexpr int rows = 12;
   std::mt19937 random(3);
@@ -84,6 +84,31 @@ TEST(Seams, ExactOnesAgreeBetweenBlackAndWhite) {
         {&image, &before, WrapMode::repeat, WrapMode::repeat, {true, true, true, true}}};
     join_seams(seams, textures, Encoding::colour, SeamFit::exact);
     EXPECT_LT(largest_difference(seams, textures, Encoding::colour), 2) << round;
+  }
+}
+
+/// Normals in frames that are turned and mirrored against one another.
+TEST(Seams, ExactOnesAgreeOnNormals) {
+  std::mt19937 random(5);
+  const auto axis = [&] { return std::polar(1.0, 2 * M_PI * static_cast<double>(random() % 1000) / 1000); };
+  for (int round = 0; round < 10; ++round) {
+    Image image = make_image(side, side, {0x8000, 0x8000, 0xffff, 0xffff});
+    const Image before = image;
+    for (std::size_t i = 0; i < image.rgba.size(); i += 4)
+      for (std::size_t c = 0; c < 3; ++c)
+        image.rgba[i + c] =
+            static_cast<std::uint16_t>(c < 2 ? 0x4000 + random() % 0x8000 : 0xc000 + random() % 0x4000);
+    std::vector<Seam> seams = random_seams(random);
+    for (std::size_t k = 0; k < 2; ++k) {
+      const Vec2 turn = axis(), across = random() % 2 == 0 ? Vec2(0, 1) : Vec2(0, -1);
+      for (Seam& seam : seams) seam.sides[k].axes = {{{turn, turn * across}, {turn, turn * across}}};
+    }
+    const std::vector<SeamTexture> textures = {
+        {&image, &before, WrapMode::repeat, WrapMode::repeat, {true, true, true, false}}};
+    EXPECT_GT(largest_difference(seams, textures, Encoding::normal), 20);
+    join_seams(seams, textures, Encoding::normal, SeamFit::exact);
+    EXPECT_LT(largest_difference(seams, textures, Encoding::normal), 2) << round;
+    EXPECT_EQ(image.rgba[3], 0xffff);
   }
 }
 

@@ -52,6 +52,7 @@ struct Stencil {
   std::array<Place, 4> places;
   std::array<double, 4> weights;
   std::array<bool, 4> shown;  ///< The texel's centre lies on the triangle's side of the seam.
+  std::array<Vec2, 2> axes;   ///< Of normals there: Seam::Side::axes.
 };
 
 /// Twice the area of the triangle, by its orientation.
@@ -82,8 +83,9 @@ std::vector<Sample> samples_along(std::span<const Seam> seams, std::span<const S
   std::vector<Sample> samples;
   for (const Seam& seam : seams) {
     double length = 0;
-    for (const auto& [texture, ends, apex] : seam.sides)
-      length = std::max(length, std::hypot(ends[1][0] - ends[0][0], ends[1][1] - ends[0][1]));
+    for (const Seam::Side& side : seam.sides)
+      length =
+          std::max(length, std::hypot(side.ends[1][0] - side.ends[0][0], side.ends[1][1] - side.ends[0][1]));
     const int count = std::max(1, static_cast<int>(std::ceil(length / spacing)));
     for (int i = 0; i < count; ++i) {
       const double t = (i + 0.5) / count;
@@ -94,6 +96,8 @@ std::vector<Sample> samples_along(std::span<const Seam> seams, std::span<const S
         sample[k] =
             stencil_at(textures[side.texture], side,
                        {(1 - t) * ends[0][0] + t * ends[1][0], (1 - t) * ends[0][1] + t * ends[1][1]});
+        for (std::size_t c = 0; c < 2; ++c)
+          sample[k].axes[c] = (1 - t) * side.axes[0][c] + t * side.axes[1][c];
       }
       samples.push_back(sample);
     }
@@ -140,6 +144,22 @@ double filtered(const Stencil& stencil, std::span<const SeamTexture> textures, S
   return sum;
 }
 
+/// The same as it is stored, of all channels; the x and y of normals in the plane that both sides share.
+std::array<double, 4> show(const Stencil& stencil, std::span<const SeamTexture> textures, State state,
+                           Encoding encoding) {
+  std::array<double, 4> values = {};
+  for (int c = 0; c < 4; ++c) {
+    const Coding coding = coding_of(encoding, c);
+    values[static_cast<std::size_t>(c)] = coding.encode(filtered(stencil, textures, state, c, coding));
+  }
+  if (encoding == Encoding::normal) {
+    const Vec2 across = (values[0] - 0.5) * stencil.axes[0] + (values[1] - 0.5) * stencil.axes[1];
+    values[0] = across.real() + 0.5;
+    values[1] = across.imag() + 0.5;
+  }
+  return values;
+}
+
 /// The texels that may change.
 class Unknowns {
  public:
@@ -184,38 +204,36 @@ std::vector<Sample> worth_joining(std::vector<Sample> samples, std::span<const S
         all &= changed;
       }
     if (!any || all) return !any;
-    for (int c = 0; c < 3; ++c) {
-      const Coding coding = coding_of(encoding, c);
-      const double a = filtered(sample[0], textures, State::before, c, coding);
-      const double b = filtered(sample[1], textures, State::before, c, coding);
-      if (std::abs(coding.encode(a) - coding.encode(b)) > worn_seam) return true;
-    }
+    const auto here = show(sample[0], textures, State::before, encoding);
+    const auto there = show(sample[1], textures, State::before, encoding);
+    for (std::size_t c = 0; c < 3; ++c)
+      if (std::abs(here[c] - there[c]) > worn_seam) return true;
     return false;
   });
   return samples;
 }
 
-/// One channel of the texels: least squares within bounds, by a primal-dual interior point method (Nocedal
-/// and Wright, "Numerical Optimization", 2006, 16.6).
-class Channel {
+/// One channel of the texels, or two that make a direction of the plane: least squares within bounds, by a
+/// primal-dual interior point method (Nocedal and Wright, "Numerical Optimization", 2006, 16.6). The values
+/// are those of the first texel's channels, then of the next one's.
+class Fit {
  public:
-  Channel(const std::vector<Sample>& samples, const Unknowns& unknowns, std::span<const SeamTexture> textures,
-          int channel, const Coding& coding, const FitTerms& terms)
+  Fit(const std::vector<Sample>& samples, const Unknowns& unknowns, std::span<const SeamTexture> textures,
+      std::vector<int> channels, const Coding& coding, const FitTerms& terms)
       : samples_(samples),
         unknowns_(unknowns),
         textures_(textures),
-        channel_(channel),
+        channels_(std::move(channels)),
         coding_(coding),
         terms_(terms) {
-    const auto count = static_cast<Eigen::Index>(unknowns.places().size());
+    const auto count = static_cast<Eigen::Index>(channels_.size() * unknowns.places().size());
     first_.resize(count);
-    for (Eigen::Index i = 0; i < count; ++i)
-      first_[i] = coding.decode(stored(unknowns.places()[i]) / 65535.0);
+    for (Eigen::Index i = 0; i < count; ++i) first_[i] = coding.decode(stored(i) / 65535.0);
     value_ = first_;
     lower_.resize(count);
     upper_.resize(count);
     for (Eigen::Index i = 0; i < count; ++i) {
-      const double reach = unknowns.shown()[i] ? terms.most_shown : terms.most_in_gutter;
+      const double reach = is_shown(i) ? terms.most_shown : terms.most_in_gutter;
       const double encoded = coding.encode(first_[i]);
       lower_[i] = coding.decode(std::max(0.0, encoded - reach));
       upper_[i] = coding.decode(std::min(1.0, encoded + reach));
@@ -235,16 +253,23 @@ class Channel {
     }
     value_ = best;
     for (Eigen::Index i = 0; i < value_.size(); ++i) {
-      const Place& place = unknowns_.places()[i];
-      const double steps = textures_[place.texture].image->bits == 8 ? 255 : 65535;
-      stored(place) =
+      const double steps = textures_[place_of(i).texture].image->bits == 8 ? 255 : 65535;
+      stored(i) =
           static_cast<std::uint16_t>(std::floor(coding_.encode(value_[i]) * steps + 0.5) * (65535 / steps));
     }
   }
 
  private:
-  [[nodiscard]] std::uint16_t& stored(const Place& place) const {
-    return textures_[place.texture].image->rgba[4 * std::size_t{place.index} + channel_];
+  [[nodiscard]] std::size_t slot_of(Eigen::Index i) const {
+    return static_cast<std::size_t>(i) / channels_.size();
+  }
+  [[nodiscard]] const Place& place_of(Eigen::Index i) const { return unknowns_.places()[slot_of(i)]; }
+  [[nodiscard]] bool is_shown(Eigen::Index i) const { return unknowns_.shown()[slot_of(i)] != 0; }
+  [[nodiscard]] std::uint16_t& stored(const Place& place, std::size_t c) const {
+    return textures_[place.texture].image->rgba[4 * std::size_t{place.index} + channels_[c]];
+  }
+  [[nodiscard]] std::uint16_t& stored(Eigen::Index i) const {
+    return stored(place_of(i), static_cast<std::size_t>(i) % channels_.size());
   }
 
   void assemble() {
@@ -253,49 +278,66 @@ class Channel {
     right_.resize(count);
     for (Eigen::Index i = 0; i < count; ++i) {
       const double slope = coding_.slope(first_[i]);
-      const double stiffness = (unknowns_.shown()[i] ? 1 : gutter_stiffness) * slope * slope;
+      const double stiffness = (is_shown(i) ? 1 : gutter_stiffness) * slope * slope;
       entries.emplace_back(i, i, stiffness);
       right_[i] = stiffness * first_[i];
     }
-    for (std::size_t i = 0; i < samples_.size(); ++i) add_sample(samples_[i], agreement_[i], entries);
+    for (std::size_t i = 0; i < samples_.size(); ++i)
+      for (const Difference& difference : differences(samples_[i]))
+        add_difference(difference, agreement_[i], entries);
     matrix_.resize(count, count);
     matrix_.setFromTriplets(entries.begin(), entries.end());
   }
 
-  /// What a sample says of the values: the terms of its sides' difference.
+  /// One way in which a sample's sides differ, of the values.
   struct Difference {
-    std::vector<std::pair<int, double>> row;  ///< Slots and weights.
-    double offset = 0;                        ///< Of the fixed texels.
+    std::vector<std::pair<int, double>> row;  ///< Values and weights.
+    double offset = 0;                        ///< Of what stays.
     double now = 0;
     double slope = 1;  ///< By how much what is stored changes with it.
+    bool free = true;  ///< All its texels may change.
   };
-  [[nodiscard]] Difference difference(const Sample& sample) const {
-    Difference difference;
-    double mean = 0;
-    for (std::size_t side = 0; side < 2; ++side)
-      for (std::size_t k = 0; k < 4; ++k) {
-        const Place& place = sample[side].places[k];
-        const double weight = side == 0 ? sample[side].weights[k] : -sample[side].weights[k];
-        const int slot = unknowns_.slot(place);
-        const bool fixed = slot == Unknowns::fixed;
-        const double now = fixed ? coding_.decode(stored(place) / 65535.0) : value_[slot];
-        mean += 0.5 * sample[side].weights[k] * now;
-        difference.now += weight * now;
-        if (fixed)
-          difference.offset += weight * now;
-        else
-          difference.row.emplace_back(slot, weight);
-      }
-    difference.slope = coding_.slope(mean);
-    return difference;
+  /// A channel's; or a direction's along both axes of the plane.
+  [[nodiscard]] std::vector<Difference> differences(const Sample& sample) const {
+    const bool plane = channels_.size() == 2;
+    std::vector<Difference> list(channels_.size());
+    for (std::size_t axis = 0; axis < list.size(); ++axis) {
+      Difference& difference = list[axis];
+      double mean = 0;
+      for (std::size_t side = 0; side < 2; ++side)
+        for (std::size_t c = 0; c < channels_.size(); ++c) {
+          const Vec2 along = plane ? sample[side].axes[c] : Vec2(1);
+          const double share = (side == 0 ? 1 : -1) * (axis == 0 ? along.real() : along.imag());
+          if (plane) difference.offset -= 0.5 * share;  // Where a texture has 0 of a direction.
+          for (std::size_t k = 0; k < 4; ++k) {
+            const Place& place = sample[side].places[k];
+            const double weight = share * sample[side].weights[k];
+            const int slot = unknowns_.slot(place);
+            if (slot == Unknowns::fixed) {
+              const double stays = coding_.decode(stored(place, c) / 65535.0);
+              difference.free = false;
+              difference.offset += weight * stays;
+              mean += 0.5 * std::abs(weight) * stays;
+              continue;
+            }
+            const int value = static_cast<int>(channels_.size()) * slot + static_cast<int>(c);
+            difference.now += weight * value_[value];
+            mean += 0.5 * std::abs(weight) * value_[value];
+            difference.row.emplace_back(value, weight);
+          }
+        }
+      difference.now += difference.offset;
+      difference.slope = coding_.slope(mean);
+    }
+    return list;
   }
 
-  void add_sample(const Sample& sample, double agreement, std::vector<Eigen::Triplet<double>>& entries) {
-    const auto [row, offset, now, slope] = difference(sample);
-    const double stiffness = agreement * slope * slope;
-    for (const auto& [i, a] : row) {
-      right_[i] -= stiffness * a * offset;
-      for (const auto& [j, b] : row) entries.emplace_back(i, j, stiffness * a * b);
+  void add_difference(const Difference& difference, double agreement,
+                      std::vector<Eigen::Triplet<double>>& entries) {
+    const double stiffness = agreement * difference.slope * difference.slope;
+    for (const auto& [i, a] : difference.row) {
+      right_[i] -= stiffness * a * difference.offset;
+      for (const auto& [j, b] : difference.row) entries.emplace_back(i, j, stiffness * a * b);
     }
   }
 
@@ -304,9 +346,9 @@ class Channel {
   double insist() {
     double worst = 0;
     for (std::size_t i = 0; i < samples_.size(); ++i) {
-      const Difference sides = difference(samples_[i]);
-      if (sides.row.size() < 8) continue;
-      const double apart = std::abs(sides.now) * sides.slope;
+      double apart = 0;
+      for (const Difference& difference : differences(samples_[i]))
+        if (difference.free) apart = std::max(apart, std::abs(difference.now) * difference.slope);
       worst = std::max(worst, apart);
       if (apart > at_odds) agreement_[i] *= insistence;
     }
@@ -378,7 +420,7 @@ class Channel {
   const std::vector<Sample>& samples_;
   const Unknowns& unknowns_;
   std::span<const SeamTexture> textures_;
-  int channel_;
+  std::vector<int> channels_;
   Coding coding_;
   FitTerms terms_;
   Eigen::SparseMatrix<double> matrix_;
@@ -399,11 +441,7 @@ std::vector<SeamSample> sample_seams(std::span<const Seam> seams, std::span<cons
     for (std::size_t side = 0; side < 2; ++side) {
       for (const Place& place : sample[side].places)
         shown.changed &= is_changed(textures[place.texture], place.index);
-      for (int c = 0; c < 4; ++c) {
-        const Coding coding = coding_of(encoding, c);
-        shown.colours[side][static_cast<std::size_t>(c)] =
-            coding.encode(filtered(sample[side], textures, State::now, c, coding));
-      }
+      shown.colours[side] = show(sample[side], textures, State::now, encoding);
     }
     result.push_back(shown);
   }
@@ -412,16 +450,18 @@ std::vector<SeamSample> sample_seams(std::span<const Seam> seams, std::span<cons
 
 void join_seams(std::span<const Seam> seams, std::span<const SeamTexture> textures, Encoding encoding,
                 SeamFit fit) {
-  if (encoding == Encoding::normal) return;
   const std::vector<Sample> samples = worth_joining(samples_along(seams, textures), textures, encoding);
   if (samples.empty()) return;
   const Unknowns unknowns(samples, textures);
-  parallel_for(4, [&](int channel) {
+  std::vector<std::vector<int>> fits = {{0}, {1}, {2}, {3}};
+  if (encoding == Encoding::normal) fits = {{0, 1}, {2}};
+  parallel_for(static_cast<int>(fits.size()), [&](int i) {
+    const std::vector<int>& channels = fits[static_cast<std::size_t>(i)];
     const bool writes = std::any_of(textures.begin(), textures.end(), [&](const SeamTexture& texture) {
-      return texture.channels[static_cast<std::size_t>(channel)];
+      return texture.channels[static_cast<std::size_t>(channels.front())];
     });
     if (writes)
-      Channel(samples, unknowns, textures, channel, coding_of(encoding, channel), terms_of(fit)).join();
+      Fit(samples, unknowns, textures, channels, coding_of(encoding, channels.front()), terms_of(fit)).join();
   });
 }
 

@@ -26,6 +26,9 @@ struct Seam {
     std::uint32_t texture;  ///< Index of a SeamTexture.
     std::array<Texel, 2> ends;
     Texel apex;  ///< The triangle's other corner: texels on its side show, those beyond are gutter.
+    /// Of normals, by end: where the frame's +x and +y, in which the texture has them, point in a plane that
+    /// both sides share (x along the seam, say).
+    std::array<std::array<Vec2, 2>, 2> axes = {{{Vec2(1, 0), Vec2(0, 1)}, {Vec2(1, 0), Vec2(0, 1)}}};
   };
   std::array<Side, 2>
       sides;  ///< The first ends of both are one point of the surface, the second ones another.
@@ -34,7 +37,8 @@ struct Seam {
 /// What a bilinear filter shows on either side of a seam, at places half a texel apart.
 struct SeamSample {
   std::array<std::array<double, 4>, 2>
-      colours;   ///< By side, 0 to 1: filtered in linear light, and encoded again.
+      colours;   ///< By side, 0 to 1: filtered in linear light, and encoded again. Of normals, x and y are in
+                 ///< the plane that both sides share.
   bool changed;  ///< All texels that take part are other than before.
 };
 std::vector<SeamSample> sample_seams(std::span<const Seam> seams, std::span<const SeamTexture> textures,
@@ -49,8 +53,8 @@ enum class SeamFit {
 };
 
 /// Brings what a bilinear filter shows on both sides of the seams together, by the smallest changes (least
-/// squares) of the texels near them that the decals have changed. Not for normals, whose two sides are in
-/// frames of their own.
+/// squares) of the texels near them that the decals have changed. Normals are what agrees, not their texels,
+/// which are in frames of their own.
 void join_seams(std::span<const Seam> seams, std::span<const SeamTexture> textures, Encoding encoding,
                 SeamFit fit = SeamFit::sharp);
 
