@@ -61,10 +61,10 @@ struct UvLayout {
 /// so that what is resampled is the same to the bit: one chart for each connected, unfolded, not overlapping
 /// piece. Those that have no texture coordinates, or such that the decal would be a smear (in some direction
 /// fewer than 1/32 texel for a pixel), are laid out as the decal's embedding is in the plane, at one texel a
-/// pixel or more; so are those that are to be unwrapped. What an embedding does not lay out, triangles of which
-/// a divided decal has parts among them, is rolled out (unroll.h). Where the old texture has less than 1/2
-/// texel along a tenth of the decals' pixels, the base colour becomes finer, as far as the old texture's size
-/// or the job's texture size allow.
+/// pixel or more; so are those that are to be unwrapped. What an embedding does not lay out, triangles of
+/// which a divided decal has parts among them, is rolled out (unroll.h). Where the old texture has less than
+/// 1/2 texel along a tenth of the decals' pixels, the base colour becomes finer, as far as the old texture's
+/// size or the job's texture size allow.
 ///
 /// Errors: not_solved when there are more charts than an atlas of 8192 x 8192 texels has room for.
 Result<UvLayout> lay_out_uvs(const SolvedJob& job, const LayoutRequest& request);

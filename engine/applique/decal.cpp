@@ -86,8 +86,8 @@ class Attempts {
     add({over_itself ? Crossings::overlap : Crossings::one_sheet, true, options_.energy});
     if (crossed_ && (best() == nullptr || !is_bearable(*best())))
       add({over_itself ? Crossings::one_sheet : Crossings::overlap, true, options_.energy});
-    // Parts that only touch in the plane, not on the surface, or lie over one another because of features that
-    // are moved past each other: it may be better without groups.
+    // Parts that only touch in the plane, not on the surface, or lie over one another because of features
+    // that are moved past each other: it may be better without groups.
     const DecalMap* map = best();
     if (map != nullptr && map->groups > 1 &&
         (folds(*map) > 0 || (map->sheets == 1 && map->quality.l2_stretch > much_stretched)))
