@@ -75,8 +75,8 @@ std::shared_ptr<const DividedSurface> finer_surface(const SurfaceMesh& surface, 
     if (!would_divide(surface, places, division)) return nullptr;
     return std::make_shared<const DividedSurface>(divide_surface(surface, places, division));
   };
-  Scales scales = {1 / lone_scale(input), 1 / lone_scale(input)};
-  if (!lone) scales = scales_along(surface, places, targets, tree);
+  Scales scales = lone ? Scales{1 / lone_scale(input), 1 / lone_scale(input)}
+                       : scales_along(surface, places, targets, tree);
   auto divided = divided_at(scales);
   // Ways along the edges of large triangles are longer than they are over the surface.
   for (int round = 0; round < most_rounds && !lone && divided != nullptr; ++round) {

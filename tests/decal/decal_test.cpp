@@ -93,6 +93,34 @@ TEST(Decal, WithOneFeatureTakesItsSizeAndDirection) {
   EXPECT_LT(map_error(surface, *map, [](const Vec3& p) { return Vec2(-(p.y() - 2), p.x() - 2); }), 1e-7);
 }
 
+/// A wedge of two large faces: what faces another way, over the edge, does not change the size on the first.
+TEST(Decal, WithOneFeatureHasItsSizeBesideAnEdge) {
+  const SurfaceMesh surface =
+      shapes::Soup{{{0, 0, 0}, {4, 0, 0}, {4, 4, 0}, {0, 4, 0}, {4, 0, -4}, {4, 4, -4}, {0, 0, -4}},
+                   {{0, 1, 2}, {0, 2, 3}, {1, 4, 5}, {1, 5, 2}, {0, 6, 4}, {0, 4, 1}}}
+          .weld();
+  for (const double width : {0.2, 1.0})
+    for (const Vec3& at : {Vec3(3, 1.4, 0), Vec3(2, 2.6, 0)}) {
+      DecalInput input = decal(surface, rectangle(), {{{256, 256}, at}});
+      input.lone = LoneFrame{width, {0, 1, 0}};
+      const auto map = solve_decal(surface, input);
+      ASSERT_TRUE(map.has_value()) << map.error().message;
+      expect_good(*map);
+      const double half = 0.5 * width;  // scene units to one of the plane
+      double area = 0;
+      for (const PatchFaceId q : ids<PatchFaceId>(map->patch.faces.size())) {
+        const auto& v = map->patch.faces[q].vertices;
+        const auto corners = surface.corners(map->patch.faces[q].mesh_face);
+        if (corners[0].z() + corners[1].z() + corners[2].z() != 0) continue;
+        const Vec2 z = map->image[v[0]];
+        area = cross(map->image[v[1]] - z, map->image[v[2]] - z) * half * half /
+               (corners[1] - corners[0]).cross(corners[2] - corners[0]).norm();
+        EXPECT_NEAR(area, 1, 0.03);
+      }
+      EXPECT_GT(area, 0);
+    }
+}
+
 TEST(Decal, UnrollsACylinder) {
   const double radius = 1;
   const SurfaceMesh surface = shapes::cylinder(96, 40, radius, 4).weld();

@@ -204,6 +204,25 @@ std::vector<PoleCase> pole_cases() {
   return cases;
 }
 
+/// Pins that are moved past each other bring turns over one another that are not: in groups the image would
+/// fold.
+TEST(Overlap, SwappedPinsOfARibbonFoldNothing) {
+  const SurfaceMesh surface = shapes::cylinder(12, 6, 1, 4).weld();
+  const std::array<double, 12> image = {50, 150, 250, 350, 450, 650, 950, 750, 850, 550, 1050, 1150};
+  std::vector<Pin> places;
+  for (int k = 0; k < 12; ++k) {
+    const double angle = 9 * (k + 0.1) / 11;
+    places.push_back({{image[k], 50}, {std::cos(angle), std::sin(angle), 1 + 0.2 * k}});
+  }
+  SolveOptions options;
+  options.overlap = Overlap::allow;
+  const auto map = solve_decal(surface, decal(surface, ribbon(), places), options);
+  ASSERT_TRUE(map) << map.error().message;
+  EXPECT_EQ(map->quality.flipped_plane + map->quality.flipped_image, 0u);
+  EXPECT_GT(map->quality.coverage, 0.99);
+  for (const double residual : map->quality.feature_residual) EXPECT_LT(residual, 0.01);
+}
+
 /// On the model's own triangles what cannot be met is said, never passed over.
 TEST(Overlap, FeaturesOnPolesOfFewTrianglesAreMetOrNamed) {
   int met = 0, named = 0;
