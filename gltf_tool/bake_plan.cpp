@@ -247,7 +247,8 @@ std::vector<std::array<double, 2>> slot_uvs(const Model& model, const ModelPart&
 
 std::vector<std::array<double, 2>> uvs_through(const Model& model, const ModelPart& part,
                                                const UvMapping& mapping) {
-  if (mapping == read_uv_mapping(model.document.json.at("materials").at(*part.material))) return part.uvs;
+  if (!part.material || mapping == read_uv_mapping(model.document.json.at("materials").at(*part.material)))
+    return part.uvs;
   const auto set = part.other_uvs.find(mapping.set);
   if (set == part.other_uvs.end()) return {};
   std::vector<std::array<double, 2>> uvs = set->second;

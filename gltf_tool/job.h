@@ -96,7 +96,7 @@ const char* name_of(BlendMode mode);
 std::string label_of(const DecalJob& decal, const DecalLayer& layer);
 std::string mask_label_of(const DecalJob& decal);
 
-/// When triangles under a decal that crosses UV seams are laid out anew, in one piece.
+/// When triangles under a decal that crosses UV seams are laid out anew, in one piece or in few.
 enum class Unwrap {
   never,
   unseen,  ///< Where what the model's textures show there stays as it is.

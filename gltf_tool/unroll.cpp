@@ -4,9 +4,8 @@
 #include <cmath>
 #include <complex>
 #include <map>
+#include <numbers>
 #include <numeric>
-#include <optional>
-#include <tuple>
 #include <utility>
 
 #include "texel_map.h"
@@ -29,53 +28,45 @@ bool has_area(const std::array<Texel, 3>& corners) {
   return shorter * slimmest > longer;
 }
 
-/// The edges between the triangles that the decals cross, each pair of triangles once.
+/// The edges between the triangles that their decals cross, each pair of triangles once.
 std::vector<Hinge> find_hinges(const SolvedJob& job, std::span<const SeparatedTriangle> triangles) {
-  std::map<std::tuple<std::size_t, std::uint32_t, std::uint32_t>, std::uint32_t> index;
+  std::map<std::pair<std::size_t, PatchFaceId>, std::uint32_t> triangle_of;  // By decal and its face.
   for (std::uint32_t i = 0; i < triangles.size(); ++i)
-    index[{triangles[i].decal, triangles[i].part, triangles[i].triangle}] = i;
+    for (const PatchFaceId f : triangles[i].faces) triangle_of[{triangles[i].decal, f}] = i;
   struct Shared {
     Hinge hinge;
     double longest = 0;  // of the pieces that the decal has of the edge
   };
   std::map<std::pair<std::uint32_t, std::uint32_t>, Shared> pairs;
-  for (std::size_t i = 0; i < triangles.size(); ++i) {
-    const SolvedDecal& decal = job.decals[triangles[i].decal];
-    const DecalMap& map = decal.map;
-    const auto index_of = [&](const PatchFace& face) -> std::optional<std::uint32_t> {
-      if (!face.mesh_face.valid()) return std::nullopt;
-      const auto& source = decal.surface->source(face.mesh_face);
-      const auto found = index.find({triangles[i].decal, source.part, source.triangle});
-      return found == index.end() ? std::nullopt : std::optional(found->second);
-    };
-    for (const PatchFaceId f : triangles[i].faces) {
-      const PatchFace& face = map.patch.faces[f];
-      for (std::size_t k = 0; k < 3; ++k) {
-        if (!face.neighbours[k].valid()) continue;
-        const PatchFace& other = map.patch.faces[face.neighbours[k]];
-        const auto j = index_of(other);
-        if (!j || *j <= i) continue;
-        const std::array<PatchVertexId, 2> ends = {face.vertices[(k + 1) % 3], face.vertices[(k + 2) % 3]};
-        const double pixels =
-            decal.region.frame().pixels_per_unit() * std::abs(map.image[ends[1]] - map.image[ends[0]]);
-        Shared& shared = pairs[{static_cast<std::uint32_t>(i), *j}];
-        shared.hinge.pixels += pixels;
-        if (pixels <= shared.longest) continue;
-        shared.longest = pixels;
-        shared.hinge.triangles = {static_cast<std::uint32_t>(i), *j};
-        for (std::size_t side = 0; side < 2; ++side) {
-          const PatchFace& here = side == 0 ? face : other;
-          for (std::size_t end = 0; end < 2; ++end) {
-            const auto corner = std::find(here.vertices.begin(), here.vertices.end(), ends[end]);
-            shared.hinge.ends[side][end] = decal.surface->corners_in_source(
-                here.mesh_face)[static_cast<std::size_t>(corner - here.vertices.begin())];
-          }
+  for (const auto& [key, i] : triangle_of) {
+    const auto& [d, f] = key;
+    const SolvedDecal& decal = job.decals[d];
+    const PatchFace& face = decal.map.patch.faces[f];
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto across = triangle_of.find({d, face.neighbours[k]});
+      if (across == triangle_of.end() || across->second <= i) continue;
+      const std::uint32_t j = across->second;
+      const PatchFace& other = decal.map.patch.faces[face.neighbours[k]];
+      const std::array<PatchVertexId, 2> ends = {face.vertices[(k + 1) % 3], face.vertices[(k + 2) % 3]};
+      const double pixels = decal.region.frame().pixels_per_unit() *
+                            std::abs(decal.map.image[ends[1]] - decal.map.image[ends[0]]);
+      Shared& shared = pairs[{i, j}];
+      shared.hinge.pixels += pixels;
+      if (pixels <= shared.longest) continue;
+      shared.longest = pixels;
+      shared.hinge.triangles = {i, j};
+      for (std::size_t side = 0; side < 2; ++side) {
+        const PatchFace& here = side == 0 ? face : other;
+        for (std::size_t end = 0; end < 2; ++end) {
+          const auto corner = std::find(here.vertices.begin(), here.vertices.end(), ends[end]);
+          shared.hinge.ends[side][end] = decal.surface->corners_in_source(
+              here.mesh_face)[static_cast<std::size_t>(corner - here.vertices.begin())];
         }
       }
     }
   }
   std::vector<Hinge> hinges;
-  for (const auto& [key, shared] : pairs)
+  for (const auto& [pair, shared] : pairs)
     if (shared.longest > 0) hinges.push_back(shared.hinge);
   return hinges;
 }
@@ -101,6 +92,37 @@ void hang(std::array<Texel, 3>& corners, const std::array<std::array<double, 3>,
   for (Texel& corner : corners)
     for (const Texel& there : other)
       if (std::hypot(corner[0] - there[0], corner[1] - there[1]) < tolerance * size) corner = there;
+}
+
+/// Turns triangles in the plane so that their box is small.
+void turn_into_box(std::vector<std::array<Texel, 3>>& corners, const std::vector<std::uint32_t>& piece) {
+  constexpr int turns = 90;  // of a degree
+  const auto turned = [](const Texel& p, int degrees) {
+    const double angle = degrees * std::numbers::pi / 180;
+    return Texel{std::cos(angle) * p[0] - std::sin(angle) * p[1],
+                 std::sin(angle) * p[0] + std::cos(angle) * p[1]};
+  };
+  double least = HUGE_VAL;
+  int best = 0;
+  for (int degrees = 0; degrees < turns; ++degrees) {
+    Texel lower = {HUGE_VAL, HUGE_VAL};
+    Texel upper = {-HUGE_VAL, -HUGE_VAL};
+    for (const std::uint32_t i : piece)
+      for (const Texel& corner : corners[i]) {
+        const Texel p = turned(corner, degrees);
+        for (std::size_t c = 0; c < 2; ++c) {
+          lower[c] = std::min(lower[c], p[c]);
+          upper[c] = std::max(upper[c], p[c]);
+        }
+      }
+    const double area = (upper[0] - lower[0]) * (upper[1] - lower[1]);
+    if (area < least) {
+      least = area;
+      best = degrees;
+    }
+  }
+  for (const std::uint32_t i : piece)
+    for (Texel& corner : corners[i]) corner = turned(corner, best);
 }
 
 }  // namespace
@@ -173,6 +195,7 @@ Unrolled unroll(const SolvedJob& job, std::span<const SeparatedTriangle> triangl
     for (const std::uint32_t i : piece)
       for (Texel& corner : unrolled.corners[i])
         for (double& x : corner) x *= scale;
+    turn_into_box(unrolled.corners, piece);
   }
   return unrolled;
 }

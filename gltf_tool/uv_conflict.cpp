@@ -173,44 +173,17 @@ SpaceState find_state(const SolvedJob& job, const TextureSpace& space, const UvC
   return state;
 }
 
-/// Whether the decal goes on from one triangle of the space to another whose texels are out of step with its
-/// own.
-bool crosses_seams(const SolvedJob& job, const TextureSpace& space, std::size_t decal_index) {
-  constexpr double tolerance = 1e-3;  // texels
-  const SolvedDecal& decal = job.decals[decal_index];
-  const DecalMap& map = decal.map;
-  const auto corners_of = [&](PatchFaceId f) -> std::optional<std::array<Texel, 3>> {
-    const FaceId face = map.patch.faces[f].mesh_face;
-    if (map.textured[f] == 0 || !face.valid()) return std::nullopt;
-    const auto& source = decal.surface->source(face);
-    const auto corners = space.corners_under(job.model, decal.job, source.part, source.triangle);
-    if (!corners) return std::nullopt;
-    return texels_inside(*corners, decal.surface->corners_in_source(face));
-  };
-  for (const PatchFaceId f : ids<PatchFaceId>(map.patch.faces.size())) {
-    const auto here = corners_of(f);
-    if (!here) continue;
-    const PatchFace& face = map.patch.faces[f];
-    for (std::size_t k = 0; k < 3; ++k) {
-      const PatchFaceId across = face.neighbours[k];
-      const auto there = across.valid() && f < across ? corners_of(across) : std::nullopt;
-      if (!there) continue;
-      const auto& vertices = map.patch.faces[across].vertices;
-      std::array<Texel, 2> apart = {};
-      for (std::size_t e = 0; e < 2; ++e) {
-        const std::size_t end = (k + 1 + e) % 3;
-        const auto j = static_cast<std::size_t>(
-            std::find(vertices.begin(), vertices.end(), face.vertices[end]) - vertices.begin());
-        for (std::size_t c = 0; c < 2; ++c)
-          apart[e][c] = ((*here)[end][c] - (*there)[j][c]) * space.texture[c];
-      }
-      for (std::size_t c = 0; c < 2; ++c)
-        if (std::abs(apart[0][c] - std::round(apart[0][c])) > tolerance ||
-            std::abs(apart[1][c] - apart[0][c]) > tolerance)
-          return true;
-    }
-  }
-  return false;
+/// The pixels along which the decal crosses seams of the space.
+double seam_pixels_in(const SolvedJob& job, const TextureSpace& space, std::size_t decal_index) {
+  return seam_pixels(job, decal_index,
+                     [&](std::uint32_t part, std::uint32_t triangle) -> std::optional<std::array<Texel, 3>> {
+                       auto corners =
+                           space.corners_under(job.model, job.decals[decal_index].job, part, triangle);
+                       if (!corners) return std::nullopt;
+                       for (Texel& corner : *corners)
+                         for (std::size_t c = 0; c < 2; ++c) corner[c] *= space.texture[c];
+                       return corners;
+                     });
 }
 
 /// Meshes with decals for all of their instances as well as for some.
@@ -380,10 +353,14 @@ Result<std::vector<UvFinding>> find_uv_conflicts(const SolvedJob& job, const Tex
       const SpaceState state = find_state(job, spaces[s], coverages[s], finding.triangles);
       auto trouble = state.trouble();
       if (job.job.unwrap != Unwrap::never && decal.uv_conflict == UvConflict::separate &&
-          !finding.mixed_instances && crosses_seams(job, spaces[s], d)) {
-        if (!unwrapped)
-          unwrapped = job.job.unwrap == Unwrap::always || unwraps_unseen(job, group, finding.triangles);
-        if (*unwrapped && !trouble) {
+          !finding.mixed_instances) {
+        // Not for a seam in another place; but where triangles are separated anyway, for no more of them.
+        constexpr double far_less = 0.5;
+        const double crossed = seam_pixels_in(job, spaces[s], d);
+        if (crossed > 0 && !unwrapped)
+          unwrapped = job.job.unwrap == Unwrap::always ||
+                      unwraps_unseen(job, group, finding.triangles, (trouble ? 1 : far_less) * crossed);
+        if (crossed > 0 && *unwrapped && !trouble) {
           trouble = UvTrouble::seams;
           for (std::size_t i = 0; i < finding.triangles.size(); ++i) in_conflict.insert(i);
         }

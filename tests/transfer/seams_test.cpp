@@ -36,9 +36,14 @@ std::vector<Seam> random_seams(std::mt19937& random, int row = 0) {
 double largest_difference(std::span<const Seam> seams, std::span<const SeamTexture> textures,
                           Encoding encoding) {
   double largest = 0;
-  for (const SeamSample& sample : sample_seams(seams, textures, encoding))
-    for (std::size_t c = 0; sample.changed && c < 4; ++c)
+  int compared = 0;
+  for (const SeamSample& sample : sample_seams(seams, textures, encoding)) {
+    if (!sample.changed) continue;
+    ++compared;
+    for (std::size_t c = 0; c < 4; ++c)
       largest = std::max(largest, 255 * std::abs(sample.colours[0][c] - sample.colours[1][c]));
+  }
+  EXPECT_GT(compared, 20);
   return largest;
 }
 
@@ -84,6 +89,58 @@ TEST(Seams, ExactOnesAgreeBetweenBlackAndWhite) {
         {&image, &before, WrapMode::repeat, WrapMode::repeat, {true, true, true, true}}};
     join_seams(seams, textures, Encoding::colour, SeamFit::exact);
     EXPECT_LT(largest_difference(seams, textures, Encoding::colour), 2) << round;
+  }
+}
+
+/// White is as far as values go, and so is an opaque alpha: where the sides agree, nothing moves.
+TEST(Seams, WhatAgreesStays) {
+  std::mt19937 random(6);
+  for (const int bits : {8, 16})
+    for (const SeamFit fit : {SeamFit::sharp, SeamFit::exact})
+      for (const std::uint16_t value : std::initializer_list<std::uint16_t>{0, 0x3333, 0xffff}) {
+        Image image = make_image(side, side, {value, value, value, 0xffff});
+        image.bits = bits;
+        const Image now = image;
+        const Image before = make_image(side, side, {0x8000, 0x8000, 0x8000, 0});
+        const std::vector<Seam> seams = random_seams(random);
+        const std::vector<SeamTexture> textures = {
+            {&image, &before, WrapMode::repeat, WrapMode::repeat, {true, true, true, true}}};
+        join_seams(seams, textures, Encoding::colour, fit);
+        EXPECT_EQ(image.rgba, now.rgba);
+        // Beside colours that do not agree, the alpha stays opaque.
+        for (std::size_t i = 0; i < image.rgba.size(); ++i)
+          if (i % 4 != 3) image.rgba[i] = static_cast<std::uint16_t>(257 * (random() % 256));
+        join_seams(seams, textures, Encoding::colour, fit);
+        for (std::size_t i = 3; i < image.rgba.size(); i += 4) ASSERT_EQ(image.rgba[i], 0xffff);
+      }
+}
+
+/// An alpha that differs elsewhere: values at their bound that no seam draws stay at it.
+TEST(Seams, ValuesAtABoundStayThereUnlessDrawn) {
+  std::mt19937 random(7);
+  for (const int bits : {8, 16}) {
+    Image image = make_image(side, side, {0xffff, 0xffff, 0xffff, 0xffff});
+    image.bits = bits;
+    const Image before = make_image(side, side, {0x8000, 0x8000, 0x8000, 0});
+    const std::vector<Seam> near = random_seams(random), far = random_seams(random, 10);
+    // Only one seam has sides that differ.
+    for (int y = 50; y < side; ++y)
+      for (int x = 0; x < 28; ++x)
+        for (int c = 0; c < 4; ++c) image.pixel(x, y)[c] = static_cast<std::uint16_t>(257 * (random() % 256));
+    std::vector<Seam> seams = near;
+    for (Seam seam : far) {
+      for (Texel& end : seam.sides[1].ends) end[1] = 55, end[0] = 4 + 0.4 * end[0];
+      seam.sides[1].apex = {seam.sides[1].ends[0][0], 60};
+      seams.push_back(seam);
+    }
+    const Image now = image;
+    const std::vector<SeamTexture> textures = {
+        {&image, &before, WrapMode::repeat, WrapMode::repeat, {true, true, true, true}}};
+    join_seams(seams, textures, Encoding::colour, SeamFit::exact);
+    EXPECT_NE(image.rgba, now.rgba);
+    for (int y = 0; y < 24; ++y)
+      for (int x = 0; x < 32; ++x)
+        for (int c = 0; c < 4; ++c) ASSERT_EQ(image.pixel(x, y)[c], 0xffff) << x << " " << y;
   }
 }
 

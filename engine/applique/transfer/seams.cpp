@@ -20,8 +20,9 @@ constexpr double gutter_stiffness = 0.05;  // of a texel out of sight against on
 constexpr double at_odds = 1 / 255.0;      // two sides that differ by more
 constexpr double insistence = 8;           // on a sample, times what it was
 constexpr int most_steps = 40;             // each is a factorisation
-constexpr double last_barrier = 1e-6;      // what a bound's push does over the distance from it
-constexpr double first_room = 0.05;        // that values have to a bound, of what is between the two
+constexpr int patience = 10;               // passes that bring nothing
+constexpr double last_barrier = 1e-13;  // where values at a bound are at it, to less than a step of 16 bits
+constexpr double first_room = 0.05;     // that values have to a bound, of what is between the two
 
 int wrapped(std::int64_t texel, int size, WrapMode mode) {
   if (mode == WrapMode::clamp) return static_cast<int>(std::clamp<std::int64_t>(texel, 0, size - 1));
@@ -242,12 +243,15 @@ class Fit {
   }
 
   void join() {
+    if (largest_apart() <= at_odds) return;
     Eigen::VectorXd best = value_;
     double least = std::numeric_limits<double>::infinity();
-    for (int pass = 0; pass < terms_.passes && least > at_odds; ++pass) {
+    int since = 0;
+    for (int pass = 0; pass < terms_.passes && least > at_odds && since < patience; ++pass) {
       assemble();
-      solve();
+      if (!solve()) break;
       const double worst = insist();
+      since = worst < least ? 0 : since + 1;
       if (worst < least) best = value_;
       least = std::min(least, worst);
     }
@@ -341,6 +345,15 @@ class Fit {
     }
   }
 
+  /// The largest difference of a sample's sides, as stored (0 to 1), of whatever texels.
+  [[nodiscard]] double largest_apart() const {
+    double largest = 0;
+    for (const Sample& sample : samples_)
+      for (const Difference& difference : differences(sample))
+        largest = std::max(largest, std::abs(difference.now) * difference.slope);
+    return largest;
+  }
+
   /// Stiffens the samples that are still at odds though all their texels may change. The largest difference
   /// of such a one, as stored (0 to 1).
   double insist() {
@@ -356,13 +369,14 @@ class Fit {
   }
 
   /// The least of the sum within the bounds, from the values as they are: Mehrotra's predictor and corrector.
-  void solve() {
+  /// Whether it was found; else they stay.
+  bool solve() {
     using Array = Eigen::ArrayXd;
     const Array between = upper_ - lower_;
     Array value = value_.array().max(lower_ + first_room * between).min(upper_ - first_room * between);
     // What the bounds push with: at first what holds the values where they are.
     const Array pull = (matrix_ * value.matrix() - right_).array();
-    const double least_push = pull.abs().mean() + last_barrier;
+    const double least_push = pull.abs().mean() + 1e-6;
     Array up = pull.max(0) + least_push;
     Array down = (-pull).max(0) + least_push;
     for (int i = 0; i < most_steps; ++i) {
@@ -375,7 +389,7 @@ class Fit {
       if (!analysed_) solver_.analyzePattern(stiff);
       analysed_ = true;
       solver_.factorize(stiff);
-      if (solver_.info() != Eigen::Success) break;
+      if (solver_.info() != Eigen::Success) return false;
       const Array rest = right_.array() - (matrix_ * value.matrix()).array() + up - down;
       Array step;
       Array step_up;
@@ -400,7 +414,9 @@ class Fit {
       up += length * step_up;
       down += length * step_down;
     }
+    if (!value.allFinite()) return false;
     value_ = value.matrix();
+    return true;
   }
 
   static double mean_barrier(const Eigen::ArrayXd& below, const Eigen::ArrayXd& up,
