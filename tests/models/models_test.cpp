@@ -38,6 +38,22 @@
 namespace applique {
 namespace {
 
+SolvedJob solve(const ModelJob& job) {
+  auto loaded = load_job(job.file);
+  EXPECT_TRUE(loaded) << loaded.error().message;
+  auto solved = solve_job(*loaded);
+  EXPECT_TRUE(solved) << solved.error().message;
+  return std::move(*solved);
+}
+
+/// The base colours that the job bakes into.
+Result<std::vector<BakeTarget>> plan_base_colours(const SolvedJob& solved) {
+  Document document = solved.model.document;
+  APPLIQUE_TRY(auto targets, plan_bake(solved, document));
+  std::erase_if(targets, [](const BakeTarget& target) { return target.slot != MaterialSlot::base_color; });
+  return targets;
+}
+
 class Models : public GpuTest {
  protected:
   /// Generates the demo once for all tests.
@@ -59,22 +75,6 @@ class Models : public GpuTest {
   static void TearDownTestSuite() {
     std::filesystem::remove_all(folder);
     GpuTest::TearDownTestSuite();
-  }
-
-  static SolvedJob solve(const ModelJob& job) {
-    auto loaded = load_job(job.file);
-    EXPECT_TRUE(loaded) << loaded.error().message;
-    auto solved = solve_job(*loaded);
-    EXPECT_TRUE(solved) << solved.error().message;
-    return std::move(*solved);
-  }
-
-  /// The base colours that the job bakes into.
-  static Result<std::vector<BakeTarget>> plan_base_colours(const SolvedJob& solved) {
-    Document document = solved.model.document;
-    APPLIQUE_TRY(auto targets, plan_bake(solved, document));
-    std::erase_if(targets, [](const BakeTarget& target) { return target.slot != MaterialSlot::base_color; });
-    return targets;
   }
 
   static inline std::filesystem::path folder;
@@ -457,10 +457,19 @@ TEST_F(Models, BothSidesOfSeamsShowTheSame) {
     }
 }
 
+class Poles : public GpuTest {
+ protected:
+  Poles() { std::filesystem::create_directories(folder_); }
+  ~Poles() override { std::filesystem::remove_all(folder_); }
+
+  const std::filesystem::path folder_ =
+      std::filesystem::temp_directory_path() / ("applique-poles-" + std::to_string(getpid()));
+};
+
 /// A ribbon round a pole of tall sides: the surface is divided for it, and the sides that it is on are rolled
 /// out, where they have no texture coordinates or islands of their own, which leaves a small part of the
 /// seams. The islands' sides agree as well.
-TEST_F(Models, SidesOfARolledOutPoleShowTheSame) {
+TEST_F(Poles, SidesThatAreRolledOutShowTheSame) {
   auto gpu = GpuTransfer::create(device());
   ASSERT_TRUE(gpu) << gpu.error().message;
   for (const int sides : {3, 7})
@@ -469,7 +478,7 @@ TEST_F(Models, SidesOfARolledOutPoleShowTheSame) {
       for (const auto& [islands, unwrap] :
            {std::pair(true, Unwrap::never), {true, Unwrap::unseen}, {false, Unwrap::unseen}}) {
         SCOPED_TRACE(testing::Message() << sides << " sides, " << turns << " turns, islands: " << islands);
-        SolvedJob solved = solve({"pole", write_pole_job(folder, sides, turns, islands), false});
+        SolvedJob solved = solve({"pole", write_pole_job(folder_, sides, turns, islands), false});
         ASSERT_FALSE(solved.decals[0].surface->corners.empty()) << "not divided";
         solved.job.unwrap = unwrap;
         const auto separated = separate_uvs(solved);
@@ -493,8 +502,8 @@ TEST_F(Models, SidesOfARolledOutPoleShowTheSame) {
 }
 
 /// Where one column of seams is all that there is, a layout with a column somewhere else is no gain.
-TEST_F(Models, APoleOfOneIslandKeepsIt) {
-  SolvedJob solved = solve({"pole", write_pole_job(folder, 7, 1.6, false), false});
+TEST_F(Poles, KeepAnIslandThatGoesRound) {
+  SolvedJob solved = solve({"pole", write_pole_job(folder_, 7, 1.6, false), false});
   ModelPart& part = solved.model.parts.front();
   ASSERT_TRUE(part.uvs.empty());
   for (const Vec3& p : part.positions)
