@@ -76,7 +76,7 @@ void warn_of_overlap(SolvedDecal& decal, const TargetWork& work, const TransferR
 }
 
 void warn_of_density(SolvedDecal& decal, const std::optional<TexelDensity>& density) {
-  constexpr double lowest = 0.5;
+  constexpr double lowest = 0.5 - 1e-6;  // Half a texel, as rounding has it, is enough.
   if (!density || density->texels_per_pixel >= lowest) return;
   decal.warnings.push_back(
       {"low_texel_density",

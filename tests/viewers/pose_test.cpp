@@ -92,7 +92,7 @@ TEST_P(Posed, ItStaysAboveTheSurface) {
 INSTANTIATE_TEST_SUITE_P(
     Models, Posed,
     testing::Values(Case{"CesiumMan", "CesiumMan.glb", 3, {}}, Case{"Fox", "Fox.glb", 3, {}},
-                    Case{"RiggedFigure", "RiggedFigure.glb", 3, {}},
+                    Case{"RiggedFigure", "RiggedFigure.glb", 4, {}},
                     Case{"lumberjack", "lumberjack.glb", 3, {}},
                     Case{"MorphStressTest", "MorphStressTest.gltf", 0.3, {-1.75, 0.4, 0.25}},
                     Case{"AnimatedMorphSphere", "AnimatedMorphSphere.glb", 1, {}},
