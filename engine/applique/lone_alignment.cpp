@@ -5,6 +5,7 @@
 #include <set>
 
 #include <Eigen/Geometry>
+#include <fmt/format.h>
 
 #include "applique/decal_input.h"
 
@@ -17,12 +18,21 @@ Result<Similarity> lone_alignment(const SurfaceMesh& surface, const DecalInput& 
   // `up`. Faces about it are turned into that plane, so that none is foreshortened. Those that face another
   // way, over an edge of the surface, hardly count, and none but its own where that is as large as the image.
   const auto own = surface.corners(input.features[0].surface.face);
-  const Vec3 normal = (own[1] - own[0]).cross(own[2] - own[0]).normalized();
-  APPLIQUE_TRY(const Vec3 y, lone_up(input, normal));
-  const Vec3 x = y.cross(normal);
   std::set<PatchFaceId> near;
   for (PatchVertexId v : disc.faces()[feature_face].vertices)
     for (PatchFaceId q : disc.fan(v)) near.insert(q);
+  Vec3 normal = (own[1] - own[0]).cross(own[2] - own[0]);
+  // A face without an area to speak of has the normal of the largest beside it.
+  if (normal.norm() <= 1e-9 * std::max((own[1] - own[0]).squaredNorm(), (own[2] - own[0]).squaredNorm()))
+    for (const PatchFaceId q : near) {
+      const auto& v = disc.faces()[q].vertices;
+      const Vec3 beside =
+          (disc.position(v[1]) - disc.position(v[0])).cross(disc.position(v[2]) - disc.position(v[0]));
+      if (beside.norm() > normal.norm()) normal = beside;
+    }
+  normal.normalize();
+  APPLIQUE_TRY(const Vec3 y, lone_up(input, normal));
+  const Vec3 x = y.cross(normal);
   const double own_area = 0.5 * (own[1] - own[0]).cross(own[2] - own[0]).norm();
   const double image_area = input.region.area() / std::pow(lone_scale(input), 2);
   const double regard = std::max(0.0, 1 - own_area / image_area);
@@ -44,6 +54,9 @@ Result<Similarity> lone_alignment(const SurfaceMesh& surface, const DecalInput& 
     total += weight * 0.5 * cross(a, b);
   }
   derivative /= total;
+  if (!(std::abs(derivative) > 0) || !std::isfinite(std::abs(derivative)))
+    return fail(ErrorCode::not_solved,
+                fmt::format("decal '{}': the triangles about its feature have no area; move it", input.name));
   const Vec2 scale = lone_scale(input) / derivative;
   return Similarity{scale, target - scale * feature};
 }
